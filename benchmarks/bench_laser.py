@@ -1,4 +1,4 @@
-"""Time whole runs of a laser's program with S in each block against the same path without, each in turn."""
+"""Time whole runs of programs with S, M, T and D in each block against the same path without, each in turn."""
 
 from __future__ import annotations
 
@@ -13,13 +13,16 @@ from _report import run_script
 BLOCKS = 180_585
 RUNS = 3
 RATIO = 2.0
-MACHINE = 'name = "laser"\n[spindle]\nlaser = true\nmax_rpm = 1000\n' + "".join(
-    f'[[axis]]\nname = "{name}"\nvmax_mm_s = 400\namax_mm_s2 = 4000\n' for name in "XYZ"
-)
+AXES = "".join(f'[[axis]]\nname = "{name}"\nvmax_mm_s = 400\namax_mm_s2 = 4000\n' for name in "XYZ")
+MACHINES = {
+    "laser": f'name = "laser"\n[spindle]\nlaser = true\nmax_rpm = 1000\n{AXES}',
+    "mill": f'name = "mill"\n[spindle]\nmax_rpm = 1000\n{AXES}',
+}
 WORDS: dict[str, Callable[[int], str]] = {
     "plain": lambda n: "",
     "S": lambda n: f" S{n * 37 % 1000}",
     "S, M3 or M4, T, D": lambda n: f" S{n * 37 % 1000} M{3 + n % 2} T{n % 30} D{n % 9}",
+    "M7, M8 or M9": lambda n: f" M{7 + n % 3}",
 }
 
 
@@ -40,22 +43,30 @@ def figures(quick: bool) -> list[Figure]:
     blocks = BLOCKS // 4 if quick else BLOCKS
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
-        machine = folder / "laser.toml"
-        machine.write_text(MACHINE)
         commands: dict[str, list[str | Path]] = {}
-        for number, kind in enumerate(WORDS):
-            for part, count in (("few", 10), ("many", blocks)):
-                path = write(folder / f"{number}{part}.nc", kind, count)
-                command = polycnc_command("run", path, "-d", "grbl", "-m", machine, "--json")
-                commands[f"{kind} {part}"] = command
+        for machine, text in MACHINES.items():
+            file = folder / f"{machine}.toml"
+            file.write_text(text)
+            for number, kind in enumerate(WORDS):
+                for part, count in (("few", 10), ("many", blocks)):
+                    path = write(folder / f"{number}{part}.nc", kind, count)
+                    command = polycnc_command("run", path, "-d", "grbl", "-m", file)
+                    commands[f"{machine} {kind} {part}"] = command
         in_turn(commands, 1)  # compiles, if nothing has compiled yet
         found = in_turn(commands, 1 if quick else RUNS)
-    seconds = {kind: found[f"{kind} many"].cpu_s - found[f"{kind} few"].cpu_s for kind in WORDS}
-    report = [Figure("plain: a block beyond a small program", seconds["plain"] / blocks * 1e6, "us")]
-    for kind in [*WORDS][1:]:
-        ratio = seconds[kind] / seconds["plain"]
-        note = f"{blocks:,} blocks in {found[f'{kind} many'].wall_s:.1f} s"
-        report.append(at_most(f"{kind} in each block, against plain", ratio, "x", RATIO, note))
+    report = []
+    for machine in MACHINES:
+        seconds = {
+            kind: found[f"{machine} {kind} many"].cpu_s - found[f"{machine} {kind} few"].cpu_s
+            for kind in WORDS
+        }
+        what = f"{machine}, plain: a block beyond a small program"
+        report.append(Figure(what, seconds["plain"] / blocks * 1e6, "us"))
+        for kind in [*WORDS][1:]:
+            ratio = seconds[kind] / seconds["plain"]
+            note = f"{blocks:,} blocks in {found[f'{machine} {kind} many'].wall_s:.1f} s"
+            what = f"{machine}, {kind} in each block, against plain"
+            report.append(at_most(what, ratio, "x", RATIO, note))
     return report
 
 

@@ -36,6 +36,7 @@ SCRIPTS = {
     "bench_focas.py": "FOCAS server",
     "bench_calls.py": "C library",
     "bench_plants.py": "MTConnect agent",
+    "bench_fleet.py": "Fleets",
     "bench_batch.py": "Batches",
     "bench_stock.py": "Stock",
 }

@@ -1,22 +1,73 @@
-"""The page of the data items: what plants read of a machine, from the tables of facts and of MTConnect."""
+"""The page of the data items: what doors say of a machine, from the tables of facts, of MTConnect and of OPC UA."""
+
+from typing import Any
 
 from polycnc.servers.mtconnect import CONDITIONS, ROWS, VERSIONS, Code, Row
+from polycnc.servers.opcua import CNC_TYPES, MACHINE_TOOL_TYPES
 from polycnc.servers.plant import FACTS
 
 _HEAD = """# Data items
 
-What a served machine tells a plant, in one table for all doors. The door `mtconnect` is an agent of its own
-(port 5000), the door `shdr` an adapter for an agent of yours (port 7878). Both serve `plain`, `fanuc` and
-`bosch` machines. The [tutorial](../tutorials/a-machine-for-your-collector.md) reads one, [a
+What a served machine tells, in one table for all doors: the plant doors `mtconnect` (port 5000), `shdr` (7878) and
+`opcua` (4840), which read it; `focas`, HTTP and the page, and `grbl`, which have their own protocols' places for the
+same facts. The plant doors serve `plain`, `fanuc` and `bosch` machines. The
+[tutorial](../tutorials/a-machine-for-your-collector.md) reads one, [a
 guide](../how-to/read-a-machine-with-your-agent.md) connects an agent of yours.
 
+A fact is of the machine, of a channel, of an axis or of the spindle. `status` is the document of
+`/api/machines/{machine}/status`, where an axis `X` is `axes.X`. Lengths are mm, angles degree, whatever the program is
+written in. At one cycle all doors say the same; the scales differ: MTConnect has speeds per second, FOCAS has integers
+with decimals.
+
+| fact | of | what | unit | MTConnect, SHDR | OPC 40502 | OPC 40501-1 | `status` | FOCAS | grbl |
+| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |
+"""
+_MTCONNECT = """
+## MTConnect and SHDR
+
 `{}` stands for the name of an axis, and from the second channel on for the number of the channel. Keys are the
-names of data items and what SHDR sends. Lengths are mm, angles degree, speeds per second, whatever the program
-is written in. A value that there is not (no program selected, a stopped spindle's direction) is `UNAVAILABLE`.
+names of data items and what SHDR sends. A value that there is not (no program selected, a stopped spindle's direction)
+is `UNAVAILABLE`.
 
 | key | what | type | subtype | unit | versions |
 | --- | --- | --- | --- | --- | --- |
 """
+STATUS = {
+    "emergency": "emergency", "powered_s": "timers_s.power_on", "operating_s": "timers_s.operating",
+    "cutting_s": "timers_s.cutting", "cycle_s": "timers_s.cycle", "mode": "channels.0.mode",
+    "execution": "channels.0.run_state", "program": "channels.0.program", "main_program": "channels.0.stack.0",
+    "active_program": "channels.0.stack.-1", "block": "channels.0.block.text", "line": "channels.0.block.line",
+    "sequence": "channels.0.block.sequence", "offset": "channels.0.block.offset",
+    "block_program": "channels.0.block.program", "feed": "channels.0.feed.actual",
+    "commanded_feed": "channels.0.feed.commanded", "programmed_feed": "channels.0.feed.programmed",
+    "feed_override": "channels.0.overrides.feed", "rapid_override": "channels.0.overrides.rapid",
+    "tool": "channels.0.tool.number", "dry_run": "channels.0.switches.dry_run",
+    "single_block": "channels.0.switches.single_block", "machine_lock": "channels.0.switches.machine_lock",
+    "optional_stop": "channels.0.switches.optional_stop", "block_delete": "channels.0.switches.block_delete",
+    "jog_increment": "wheel.size", "parts": "parts.made", "parts_wanted": "parts.required",
+    "parts_total": "parts.total",
+    "machine_position": "axes.X.machine", "setpoint": "axes.X.setpoint", "work_position": "axes.X.work",
+    "to_go": "axes.X.to_go", "following_error": "axes.X.following_error", "velocity": "axes.X.velocity",
+    "load": "axes.X.load_percent", "moving": "axes.X.moving", "referenced": "axes.X.referenced",
+    "spindle_speed": "spindle.actual_rpm", "commanded_spindle_speed": "spindle.commanded_rpm",
+    "programmed_spindle_speed": "spindle.programmed_rpm", "spindle_override": "spindle.override",
+    "spindle_direction": "spindle.direction", "spindle_angle": "spindle.angle_deg",
+}  # fmt: skip
+"""Where the status has a fact, of the first channel or the axis X; a test looks there."""
+_FOCAS = {
+    "emergency": "statinfo emergency", "mode": "statinfo aut", "execution": "statinfo run", "program": "rdprgnum mdata",
+    "active_program": "rdprgnum data, exeprgname", "block": "rdexecprog", "line": "rdexecprog", "sequence": "rdseqnum",
+    "feed": "actf", "feed_override": "PMC G12 (255 - value)", "machine_position": "machine",
+    "work_position": "absolute",
+    "to_go": "distance", "spindle_speed": "acts", "tool": "modal 108", "powered_s": "parameter 6750",
+    "operating_s": "parameters 6751, 6752", "cutting_s": "parameters 6753, 6754", "parts": "parameter 6711",
+    "parts_total": "parameter 6712", "parts_wanted": "parameter 6713",
+}  # fmt: skip
+_GRBL = {
+    "execution": "state", "machine_position": "MPos", "work_position": "MPos - WCO", "feed": "FS",
+    "spindle_speed": "FS",
+    "feed_override": "Ov", "rapid_override": "Ov", "spindle_override": "Ov",
+}  # fmt: skip
 _MIDDLE = """
 Besides: `message` (MESSAGE, with the number of the message before 2.7), `tool_asset_id{}` (TOOL_ASSET_ID), `asset_chg`,
 `asset_rem` and, from 2.0 on, `asset_count`. In 1.3 `execution` says PROGRAM_OPTIONAL_STOP where
@@ -99,9 +150,39 @@ def _versions(row: Row) -> str:
     return "all" if len(known) == len(VERSIONS) else ", ".join(known)
 
 
+def _members(types: tuple[Any, ...]) -> dict[str, list[str]]:
+    """Return the members that show a fact, by the fact."""
+    found: dict[str, list[str]] = {}
+    for row in types:
+        for member in row.members:
+            facts = getattr(member.read, "facts", (getattr(member.read, "fact", ""),))
+            for fact in facts:
+                names = found.setdefault(fact, [])
+                name = member.name[:-1] + "..." if member.name.startswith("PosTcp") else member.name
+                if name not in names:
+                    names.append(name)
+    return found
+
+
+def _facts() -> str:
+    """Return the rows of the table of all doors."""
+    keys: dict[str, list[str]] = {}
+    for row in ROWS:
+        if row.key not in keys.setdefault(row.fact, []):
+            keys[row.fact].append(row.key)
+    cnc, tool = _members(CNC_TYPES), _members(MACHINE_TOOL_TYPES)
+    text = ""
+    for name, fact in FACTS.items():
+        columns = (keys.get(name, []), cnc.get(name, []), tool.get(name, []))
+        cells = [", ".join(f"`{each}`" for each in column) for column in columns]
+        cells += [f"`{STATUS[name]}`" if name in STATUS else "", _FOCAS.get(name, ""), _GRBL.get(name, "")]
+        text += f"| {name} | {fact.scope} | {fact.what} | {fact.unit} | {' | '.join(cells)} |\n"
+    return text
+
+
 def page() -> str:
     """Return the page."""
-    text = _HEAD
+    text = _HEAD + _facts() + _MTCONNECT
     for row in ROWS:
         fact = FACTS[row.fact]
         unit = row.units(row.only) if row.sample else "%" if str(fact.unit) == "%" else ""

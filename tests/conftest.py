@@ -28,6 +28,8 @@ HOW_TO_GET = {
     "POLYCNC_DATA to": "no public NC programs: put them into nc/ of a folder and name it by POLYCNC_DATA",
     "MTConnect schemas": "no schemas of MTConnect: put them into mtconnect/ of a folder and name it by POLYCNC_DATA",
     "pip install pymtconnect": "no foreign client of MTConnect (pip install pymtconnect requests)",
+    "no node-opcua": "no foreign client of OPC UA (npm install --prefix ~/.cache/polycnc/node node-opcua-client)",
+    "no o6": "no second foreign client of OPC UA (pip install o6)",
     "inventory": "no inventory of the manuals: put it beside the checkout as shared/inventory",
     "Chromium": "no browser on the PATH (Debian: apt-get install chromium)",
     "Playwright": "no Playwright (pip install -e '.[test]')",

@@ -37,26 +37,6 @@ if TYPE_CHECKING:
         verify_trace,
     )
 
-_HOME = {
-    "errors": ("AlarmError", "ConfigurationError", "PolycncError", "ProgramError", "UsageError"),
-    "machine": ("Machine", "MachineConfig", "load_machine"),
-    "runner": (
-        "Alarm",
-        "BatchResult",
-        "Comparison",
-        "RunResult",
-        "Trace",
-        "Violation",
-        "batch",
-        "check",
-        "compare",
-        "plot",
-        "read_trace",
-        "run",
-        "verify_trace",
-    ),
-}
-
 __all__ = [
     "Alarm",
     "AlarmError",
@@ -82,7 +62,7 @@ __all__ = [
 ]
 
 
-__getattr__ = names_on_demand(__name__, _HOME)
+__getattr__ = names_on_demand(__name__)
 
 
 def __dir__() -> list[str]:

@@ -50,11 +50,22 @@ class UsageError(PolycncError, ValueError):
 
 
 class ConfigurationError(UsageError):
-    """A configuration file with an unknown key, a missing key or a value out of range."""
+    """A configuration file with an unknown key, a missing key or a value out of range.
 
-    def __init__(self, what: str, *, hint: str = "", position: SourcePosition | None = None) -> None:
+    `parts` are all that is wrong with it, each by itself, where it is more than one thing.
+    """
+
+    def __init__(
+        self,
+        what: str,
+        *,
+        hint: str = "",
+        position: SourcePosition | None = None,
+        parts: tuple[ConfigurationError, ...] = (),
+    ) -> None:
         super().__init__(what, hint=hint)
         self.position = position
+        self.parts = parts
 
     def __str__(self) -> str:
         return _placed(self.what, self.position, self.hint)
@@ -99,3 +110,12 @@ def _placed(what: str, position: SourcePosition | None, hint: str) -> str:
     if hint:
         lines.append(hint)
     return "\n".join(lines)
+
+
+def shown(value: object, most: int = 60) -> str:
+    """Return a value for a message, in at most so many characters."""
+    try:
+        text = repr(value)
+    except ValueError:  # Python writes no whole number of more than 4,300 digits
+        return "a number without end"
+    return text if len(text) <= most else f"{text[: most - 3]}..."

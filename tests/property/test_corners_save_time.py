@@ -68,7 +68,7 @@ def test_going_on_is_never_slower_than_stopping_at_every_block(
     settings: PathSettings, length: float | None
 ) -> None:
     saved = 0
-    for seed in seeds(2000, 2060):
+    for seed in seeds(2000, 2016):
         most = 300 if seed % 2 else 8
         cycles = [
             skip(state, 0, int(state.paths.row[0]["tail"]))

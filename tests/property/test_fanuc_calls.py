@@ -47,11 +47,11 @@ def state(control: PowerMate) -> tuple[Any, ...]:
         [control.tool_offsets.get(number) for number in range(1, 100)],
         [(each, control.programs.read(each.number)) for each in control.programs.directory()],
         (
-            control.selected,
-            control.cursor,
+            control.programs.selected,
+            control.state.cursor,
             control.mdi.state.blocks,
             control.mdi.state.start,
-            control.alarm_bits,
+            control.power.alarm_bits,
         ),
         control.control.relative_zero,
     )

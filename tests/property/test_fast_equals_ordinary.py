@@ -5,11 +5,13 @@ from __future__ import annotations
 import math
 
 import hypothesis.strategies as st
+import numpy as np
 import pytest
 from hypothesis import HealthCheck, example, given, settings
 
-from polycnc.machine import MachineConfig
-from polycnc.nc import DIALECTS, Block, Channel, Dialect, EndSource, load_dialect
+from polycnc.machine import Machine, MachineConfig
+from polycnc.nc import DIALECTS, Block, Channel, Dialect, EndSource, ProgramText, load_dialect
+from polycnc.nc.channel._options import ChannelOptions
 from polycnc.nc.channel._reader import Reader
 from polycnc.nc.channel._running import Running
 from support.block_strategies import half_circles, modes, programs, straight
@@ -86,8 +88,8 @@ def test_the_fast_path_takes_plain_blocks_and_only_those(monkeypatch: pytest.Mon
 
     monkeypatch.setattr(Reader, "take", noting)
     plain = "".join(f"N{n} G1 X{n % 50} Y.{n} F1000\n" for n in range(500))
-    prepare("G21 G90\n" + plain + "M8\nG2 X9 I-20.05 J.001\n")
-    assert taken == [1, 502, 503]
+    prepare("G21 G90\n" + plain + "M8\nM19\nG2 X9 I-20.05 J.001\n")
+    assert taken == [1, 503, 504]
 
 
 LASER = machine_config(
@@ -102,6 +104,7 @@ lasting = st.sampled_from(
         *("", "", "S300", "S300", "S17.5", "S0", "S1000", "S1001", "S-2", "S5 S6", "M3", "M4", "M4 S250"),
         *("M5", "M3 M5", "M3 M8", "M8", "M03", "M3.5", "M19", "T1", "T2.5", "T7 T8", "D1", "D9", "D-1"),
         *("T2 D2", "H1", "H2", "H0", "T2 M6", "S20 M5 T3"),
+        *("M7", "M9", "M7 M8", "S55 M7", "S8 M9 T4", "M19", "M3 S70", "G96 S50", "G97 S90"),
     )
 )
 worded = st.builds("{} {}".format, st.one_of(straight, straight, half_circles), lasting)
@@ -116,7 +119,8 @@ def recorded(channel: Channel) -> list[object]:
     tags = channel.machine.state.seg.row["tag"][:tail].tolist()
     marks = channel.writer.marks or ()
     records = [channel.records.block(tag) for tag in [*tags, *(tag for _, tag in marks)]]
-    return [[count for count, _ in marks], *((record.line, record.modal) for record in records if record)]
+    said = [[tag and bool(channel.records.spindle_turns(np.array([tag]))[0]) for tag in tags]]
+    return [said, [count for count, _ in marks], *((each.line, each.modal) for each in records if each)]
 
 
 @settings(max_examples=60, suppress_health_check=[HealthCheck.too_slow])
@@ -126,6 +130,7 @@ def recorded(channel: Channel) -> list[object]:
     lasers,
 )
 @example(FIVE, "din", "G43 H1\nG1 X7 H1 F300\nX9 H2\nX3 H1 T2 D1\n")
+@example(FIVE, "fanuc", "M8\nG1 X1 F300 M7 S20\nX2 M8\nX3 M9 S9000\nX3 S4 M3\nM7 T2\nM19\nM3\nX5 M3 S30\n")
 @example(ROUNDED, "grbl", "M4 S20\nG1 X1 F300 S30\nX2 S30\nX3 S40\nS50\nX4 M5\nX5 M3 T2 D2\n")
 def test_words_that_stop_nothing(config: MachineConfig, dialect: str, program: str) -> None:
     fast, ordinary = (
@@ -138,7 +143,10 @@ def test_words_that_stop_nothing(config: MachineConfig, dialect: str, program: s
     assert recorded(fast) == recorded(ordinary)
 
 
-def test_a_laser_word_in_each_block_stays_in_the_compiled_reader(monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.mark.parametrize("config", [LASER, FIVE], ids=["laser", "mill"])
+def test_words_in_each_block_stay_in_the_compiled_reader(
+    monkeypatch: pytest.MonkeyPatch, config: MachineConfig
+) -> None:
     taken: list[int] = []
     take = Reader.take
 
@@ -148,8 +156,20 @@ def test_a_laser_word_in_each_block_stays_in_the_compiled_reader(monkeypatch: py
         return block
 
     monkeypatch.setattr(Reader, "take", noting)
-    words = ("S{n}", "S3 M4", "M5", "M3 T{n}", "D{n} S2", "H1")
-    lines = "".join(f"G1 X{n % 50}.5 F{n + 100} {words[n % 6].format(n=n)}\n" for n in range(600))
-    channel = prepare("G21 G90 G43 H1\n" + lines, config=LASER)
+    words = ("S{n}", "S3 M4", "M5", "M3 T{n}", "D{n} S2", "H1", "M7", "S{n} M8", "M9")
+    lines = "".join(f"G1 X{n % 50}.5 F{n + 100} {words[n % 9].format(n=n)}\n" for n in range(600))
+    channel = prepare("G21 G90 G43 H1\n" + lines, config=config)
     assert channel.error is None
     assert taken == [1]
+
+
+def test_functions_that_are_answered_are_no_plain_blocks() -> None:
+    channel = Channel(
+        ProgramText.from_text("M8\nG1 X7 F300\nM9\nX3\n", "test.nc"),
+        load_dialect("din"),
+        Machine(FIVE),
+        options=ChannelOptions(answers=True, ordinary_blocks=0),
+    )
+    channel.fill()
+    assert [event.word for event in channel.writer.events.values()] == ["M8"]
+    assert channel.waits

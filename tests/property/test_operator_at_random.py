@@ -24,6 +24,7 @@ from polycnc.cnc import (
     RunState,
 )
 from support.cnc_machine import cnc_machine
+from support.often import often
 
 Floats = npt.NDArray[np.float64]
 
@@ -237,7 +238,7 @@ def from_the_dwell(points: Floats) -> Floats:
     return points[np.flatnonzero(rests)[0] :]
 
 
-@pytest.mark.parametrize("seed", [2, 9, 14, 45, 53, 60])
+@pytest.mark.parametrize("seed", often([2, 9, 14, 45, 53, 60], 3))
 def test_whatever_was_pressed_before_a_part_comes_out_the_same(seed: int) -> None:
     fresh, used = desk(seed), desk(seed)
     used.some_time()

@@ -126,7 +126,7 @@ def controls(draw: st.DrawFn) -> Settings:
     return parameters, macros
 
 
-@settings(max_examples=100)
+@settings(max_examples=40)
 @given(tool_paths(), controls())
 def test_the_machine_sweeps_what_the_tool_path_means(text: str, settings: Settings) -> None:
     used = control(*settings, decimals=DECIMALS)
@@ -141,7 +141,7 @@ def test_the_machine_sweeps_what_the_tool_path_means(text: str, settings: Settin
     assert proof.run.cutting_path_mm >= proof.path_feed_mm - 0.01 * (1 + result.summary.blocks)
 
 
-@settings(max_examples=40)
+@settings(max_examples=15)
 @given(tool_paths(), st.sampled_from(["bosch-pnc", "din", "fanuc-mill"]))
 def test_shipped_control_files_keep_their_rounding(text: str, name: str) -> None:
     # Three decimals: ends and centres of arcs are rounded by 0.0005 mm in each axis.

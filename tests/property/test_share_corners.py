@@ -217,7 +217,7 @@ def test_positioning_is_rounded_as_well_but_not_into_feed() -> None:
 
 
 def wait(track: Track) -> None:
-    append_wait(track.state.seg, track.state.paths, 0, 0.4, -1, 99)
+    append_wait(track.state.seg, track.state.paths, 0, 0.4, -1, 99, 0)
 
 
 @pytest.mark.parametrize("end", [Track.close, wait], ids=["end", "wait"])

@@ -10,8 +10,8 @@ import pytest
 
 from support.cut_devices import DEVICES
 
-CYCLES = 900
-ALWAYS, LONG = range(6), range(6, 2006)
+CYCLES = 600
+ALWAYS, LONG = range(4), range(4, 2004)
 
 
 def _seen(device: Any) -> object:

@@ -108,7 +108,7 @@ def outlines(draw: st.DrawFn) -> tuple[list[Piece], Roughing]:
     return contour_of(points), numbers
 
 
-@settings(max_examples=300, deadline=None)
+@settings(max_examples=100, deadline=None)
 @given(outlines(), st.booleans())
 def test_no_pass_cuts_the_part_or_too_deep(case: tuple[list[Piece], Roughing], rapid: bool) -> None:
     contour, numbers = case

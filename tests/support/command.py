@@ -76,21 +76,26 @@ def script(path: Path, text: str, cwd: Path, **more: str) -> subprocess.Complete
 def _answered(
     words: list[str], cwd: Path | None, request: dict[str, object]
 ) -> subprocess.CompletedProcess[str]:
-    server = _server(tuple(sorted(environment().items())))
-    assert server.stdin is not None
-    assert server.stdout is not None
     with tempfile.TemporaryDirectory() as folder:
         outputs = [Path(folder, name) for name in ("stdout", "stderr")]
         place = {"folder": str(cwd or Path.cwd()), "outputs": [str(path) for path in outputs]}
-        server.stdin.write(json.dumps({**request, **place}) + "\n")
-        server.stdin.flush()
-        if not select.select([server.stdout], [], [], TIMEOUT_S)[0]:
-            _server.cache_clear()
-            server.kill()
-            raise subprocess.TimeoutExpired([*COMMAND, *words], TIMEOUT_S)
-        answer = int(server.stdout.readline())
+        answer = request_of({**request, **place})
         said = [path.read_text(encoding="utf-8") for path in outputs]
     return subprocess.CompletedProcess([*COMMAND, *words], answer, *said)
+
+
+def request_of(request: dict[str, object]) -> int:
+    """Send a request to the process that forks; return its answer."""
+    server = _server(tuple(sorted(environment().items())))
+    assert server.stdin is not None
+    assert server.stdout is not None
+    server.stdin.write(json.dumps(request) + "\n")
+    server.stdin.flush()
+    if not select.select([server.stdout], [], [], TIMEOUT_S)[0]:
+        _server.cache_clear()
+        server.kill()
+        raise subprocess.TimeoutExpired([*COMMAND, str(request.get("arguments"))], TIMEOUT_S)
+    return int(server.stdout.readline())
 
 
 @functools.lru_cache(maxsize=1)

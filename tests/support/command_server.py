@@ -3,12 +3,15 @@
 A command still has a process, a folder and outputs of its own; what it is spared are the imports and the loading of
 compiled functions, which cost a second and its own work a few hundredths.
 A request is JSON with `folder`, `outputs` (the files for what it prints), and the `arguments` of a command, or a
-`script` with the `text` that it reads and more of an `environment`; the answer is its exit status.
+`script` with the `text` that it reads and more of an `environment`; the answer is its exit status. With `status`, a
+FIFO, the answer comes at once, and the process goes on: its number and in the end its exit status are written there.
 """
 
 from __future__ import annotations
 
 import atexit
+import contextlib
+import importlib
 import io
 import json
 import os
@@ -30,6 +33,9 @@ def become(request: dict[str, Any]) -> None:
         opened = os.open(file, mode)
         os.dup2(opened, stream)
         os.close(opened)
+    if "status" in request:  # streams that know that these files are pipes
+        sys.stdout = open(1, "w", encoding="utf-8", buffering=1, closefd=False)  # noqa: SIM115
+        sys.stderr = open(2, "w", encoding="utf-8", buffering=1, closefd=False)  # noqa: SIM115
     os.environ.update(request.get("environment", {}))
     try:
         if "script" in request:
@@ -51,14 +57,48 @@ def become(request: dict[str, Any]) -> None:
     os._exit(status)
 
 
+def load_servers() -> None:
+    """Load what `polycnc serve` needs, and make a machine of the kinds that are served most."""
+    from polycnc.servers.process import KINDS, Machinery
+
+    for name in ("focas", "grbl", "http", "mtconnect", "opcua", "setup", "shdr"):
+        with contextlib.suppress(ModuleNotFoundError):
+            importlib.import_module(f"polycnc.servers.{name}")
+    for kind in ("plain", "fanuc"):
+        made = KINDS[kind](Machinery())
+        made.device.advance(2)
+        made.end()
+
+
+def go_on(request: dict[str, Any]) -> None:
+    """Let a process become a command that goes on, while this one waits for its end."""
+    child = os.fork()
+    if child == 0:
+        os.setsid()
+        become(request)
+    with open(request["status"], "w", encoding="utf-8") as status:
+        print(child, file=status, flush=True)
+        print(os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]), file=status)
+    os._exit(0)
+
+
 def serve() -> None:
     """Answer requests until there are no more; a child leaves with its command."""
     run(ProgramText.from_text("G1 X1 F99\nM30\n"), "mill3")
+    loaded = False
     for line in sys.stdin:
+        request = json.loads(line)
+        goes_on = "status" in request
+        if goes_on and not loaded:
+            load_servers()
+            loaded = True
         child = os.fork()
         if child == 0:
-            become(json.loads(line))
-            return
+            if not goes_on:
+                become(request)
+            elif os.fork() == 0:
+                go_on(request)
+            os._exit(0)
         print(os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]), flush=True)
 
 

@@ -44,11 +44,11 @@ def unchanged(control: PowerMate, call: Callable[[], EW], code: EW) -> None:
     """Check that a call is refused with a code, and that the programs and the selection stay."""
     before = (
         [(each, control.programs.read(each.number)) for each in control.programs.directory()],
-        control.selected,
+        control.programs.selected,
     )
     assert call() == code
     after = (
         [(each, control.programs.read(each.number)) for each in control.programs.directory()],
-        control.selected,
+        control.programs.selected,
     )
     assert after == before

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import socket
-import subprocess
 from pathlib import Path
 
 from polycnc.servers.focas import (
@@ -16,14 +15,16 @@ from polycnc.servers.focas import (
     read_replies,
     write_requests,
 )
-from support.command import COMMAND, environment
+from support.started import Started, started
 
 
 class Line:
     """A connection to a served control."""
 
-    def __init__(self, port: int, channel: int = 2, address: str = "127.0.0.1") -> None:
-        self.socket = socket.create_connection((address, port), timeout=60)
+    def __init__(
+        self, port: int, channel: int = 2, address: str = "127.0.0.1", timeout_s: float = 60.0
+    ) -> None:
+        self.socket = socket.create_connection((address, port), timeout=timeout_s)
         self.frames = FrameReader()
         self.got: list[Frame] = []
         try:
@@ -31,6 +32,7 @@ class Line:
         except BaseException:
             self.socket.close()
             raise
+        self.socket.settimeout(60.0)
 
     def ask(self, frame: Frame) -> Frame:
         """Send a frame and return the next one that comes."""
@@ -79,22 +81,16 @@ def values(payload: bytes) -> list[float | None]:
     return [Value8.from_wire(payload[at : at + 8]).number for at in range(0, len(payload), 8)]
 
 
-def serve(*arguments: str | Path, port: int = 0, said: str = "focas: ") -> tuple[subprocess.Popen[str], int]:
+def serve(*arguments: str | Path, port: int = 0, said: str = "focas: ") -> tuple[Started, int]:
     """Start a process that serves, and return it with its port when it listens."""
-    process = subprocess.Popen(
-        [*COMMAND, "serve", "--fanuc", "--port", str(port), *map(str, arguments)],
-        stdout=subprocess.PIPE,
-        stderr=subprocess.PIPE,
-        text=True,
-        env=environment(PYTHONUNBUFFERED="1"),
-    )
+    process = started("serve", "--fanuc", "--port", str(port), *arguments)
     assert process.stdout is not None
     line = process.stdout.readline()
     assert line.startswith(said), line
     return process, int(line.partition("127.0.0.1:")[2].partition(";")[0].partition(" ")[0])
 
 
-def end(process: subprocess.Popen[str]) -> str:
+def end(process: Started) -> str:
     """End a process that serves and return what it said on standard error."""
     process.terminate()
     _, error = process.communicate(timeout=60)

@@ -240,7 +240,7 @@ class Player:
     def do_wait(self, seconds: str, event: str = "-1") -> None:
         self.tag += 1
         self.new = True
-        append_wait(self.state.seg, self.state.paths, PATH, float(seconds), int(event), self.tag)
+        append_wait(self.state.seg, self.state.paths, PATH, float(seconds), int(event), self.tag, 0)
 
     def do_end(self, _: str, value: str) -> None:
         """Prescribe the speed at the end of the last segment: `end speed 12.5`."""

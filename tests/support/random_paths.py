@@ -98,7 +98,7 @@ class PathMaker:
         if kind == 0:
             self._arc(feed)
         elif kind == 1:
-            append_wait(state.seg, state.paths, 0, 0.003, -1, self.tag)
+            append_wait(state.seg, state.paths, 0, 0.003, -1, self.tag, 0)
         else:
             length = 10.0 ** rng.uniform(-5.0, 1.5) if self.length is None else self.length
             direction = np.array(

@@ -11,11 +11,13 @@ import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
+from typing import Any
 
 import pytest
 
-from support.command import COMMAND, environment
+from support.command import environment
 from support.grbl_sender import stream
+from support.started import started
 
 MACHINE = Path(__file__).parents[1] / "support" / "grbl_machine.py"
 TUTORIAL = Path(__file__).parents[2] / "docs" / "tutorials" / "your-sender.md"
@@ -52,18 +54,13 @@ class Link:
 
 
 @contextmanager
-def machine(arguments: list[str], expected: str) -> Iterator[int]:
-    """Serve a machine; yield its port."""
-    process = subprocess.Popen(
-        arguments, env=environment(), stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
-    )
+def machine(process: Any, expected: str) -> Iterator[int]:
+    """Take a process that serves a machine; yield its port."""
     try:
-        assert process.stdout is not None
         said = process.stdout.readline()
         found = re.fullmatch(rf"grbl: 127\.0\.0\.1:(\d+){expected}\n", said)
         assert found, said + str(process.stderr and process.stderr.read())
         yield int(found[1])
-        assert process.poll() is None
     finally:
         process.send_signal(signal.SIGINT)
         _, errors = process.communicate(timeout=30)
@@ -74,7 +71,10 @@ def machine(arguments: list[str], expected: str) -> Iterator[int]:
 def test_a_program_is_streamed_over_tcp_and_over_the_terminal(tmp_path: Path) -> None:
     terminal = tmp_path / "tty"
     arguments = [sys.executable, str(MACHINE), "0", str(terminal), "20"]
-    with machine(arguments, f" and {re.escape(str(terminal))}") as port:
+    process = subprocess.Popen(
+        arguments, env=environment(), stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+    )
+    with machine(process, f" and {re.escape(str(terminal))}") as port:
         with socket.create_connection(("127.0.0.1", port), timeout=60) as connection:
             link = Link(connection.fileno())
             connection.settimeout(None)
@@ -101,8 +101,8 @@ def test_a_program_is_streamed_over_tcp_and_over_the_terminal(tmp_path: Path) ->
 def test_the_conversation_of_the_tutorial() -> None:
     talk = shown()["talk"].splitlines()
     assert shown()["said"] == "grbl: 127.0.0.1:8123 and /tmp/ttyGRBL\n"
-    arguments = [*COMMAND, "serve", "--plain", "mill3", "--doors", "grbl=0"]
-    with machine(arguments, "") as port, socket.create_connection(("127.0.0.1", port)) as connection:
+    process = started("serve", "--plain", "mill3", "--doors", "grbl=0")
+    with machine(process, "") as port, socket.create_connection(("127.0.0.1", port)) as connection:
         link = Link(connection.fileno())
         assert [link.read_line(), link.read_line()] == ["", "Grbl 1.1h ['$' for help]"]
         for line in talk:

@@ -7,8 +7,11 @@ seed decides, and what it leaves is held to what it said. The ordinary run kills
 
 from __future__ import annotations
 
+import contextlib
+import json
 import os
 import random
+import sqlite3
 import subprocess
 import sys
 import time
@@ -147,6 +150,18 @@ for number in itertools.count(int(sys.argv[2]) + 1):
     print(number, flush=True)
 """
 
+BATCH = """
+import sys
+from pathlib import Path
+from polycnc import batch
+folder, first = Path(sys.argv[1]), int(sys.argv[2])
+parts = folder / "parts"
+parts.mkdir(exist_ok=True)
+for number in range(1, first + 41):
+    (parts / f"{number:04}.nc").write_text(f"G1 X{number} F900\\n")
+batch(parts, jobs=1, done=folder / "m.done", progress=lambda done, total: done > first and print(done, flush=True))
+"""
+
 
 def _check_store(folder: Path, said: int) -> None:
     with Store(folder / "m.db") as store:
@@ -233,6 +248,16 @@ def _check_cpl(folder: Path, said: int) -> None:
     assert (found["#A%"], found["#B"]) in ((said, said * 0.25), (said + 1, (said + 1) * 0.25))
 
 
+def _check_batch(folder: Path, said: int) -> None:
+    if said == 0 and not (folder / "m.done").exists():
+        return
+    with contextlib.closing(sqlite3.connect(folder / "m.done")) as store:
+        found = [json.loads(text) for (text,) in store.execute("SELECT report FROM report")]
+    assert len(found) >= said
+    for report in found:
+        assert report["extents"][0] == ["X", 0.0, float(Path(report["program"]).stem)]
+
+
 @dataclass(frozen=True)
 class Write:
     """A kind of write: its writer, what is held to what it said, and how far on it is killed, in lines."""
@@ -251,6 +276,7 @@ WRITES = {
     "library": Write(LIBRARY, _check_library, 12),
     "board": Write(BOARD, _check_board, 12),
     "cpl": Write(CPL, _check_cpl, 6),
+    "batch": Write(BATCH, _check_batch, 12),
 }
 
 
@@ -285,7 +311,7 @@ def kill_once(write: Write, folder: Path, chance: random.Random, said: int) -> i
 
 def _campaign(name: str, folder: Path, kills: int, seed: int) -> None:
     chance = random.Random(f"{name} {seed}")
-    grows = name in ("store", "library", "board", "cpl")
+    grows = name in ("store", "library", "board", "cpl", "batch")
     said = 0
     for number in range(kills):
         at = folder / "lasting" if grows else folder / str(number)

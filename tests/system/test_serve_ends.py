@@ -15,7 +15,7 @@ from typing import Any
 
 import pytest
 
-from support.command import COMMAND, environment
+from support.started import started
 
 httpx = pytest.importorskip("httpx", reason="pip install httpx")
 pytest.importorskip("fastapi", reason="pip install 'polycnc[serve]'")
@@ -28,21 +28,14 @@ class Process:
     """A process that serves one machine by several doors."""
 
     def __init__(self, *arguments: str | Path, files: int | None = None) -> None:
-        def few() -> None:
-            if files is not None:
-                resource.setrlimit(resource.RLIMIT_NOFILE, (files, files))
-
-        self.process = subprocess.Popen(
-            [*COMMAND, "serve", *map(str, arguments)],
-            stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, env=environment(PYTHONUNBUFFERED="1"),
-            preexec_fn=few,
-        )  # fmt: skip
-        assert self.process.stdout is not None
+        self.process = started("serve", *arguments)
         self.said: dict[str, str] = {}
         while "http:" not in self.said:
             name, _, at = self.process.stdout.readline().partition(" ")
             assert at, self.process.stderr
             self.said[name] = at.strip()
+        if files is not None:
+            resource.prlimit(self.process.pid, resource.RLIMIT_NOFILE, (files, files))
         self.port = int(self.said["http:"].rpartition(":")[2])
         self.url = f"{self.said['http:']}/api/machines/machine"
 
@@ -109,9 +102,18 @@ def test_a_signal_ends_it_at_once_whatever_is_open(
         thread.join()
     assert served.process.returncode == status
     assert "Traceback" not in error
-    assert took_s < LATE_S + 30 * slow_s()
+    assert took_s < LATE_S + 5 * slow_s()
     if number is signal.SIGTERM:
         check_kept(memory)
+
+
+def test_a_program_that_takes_long_to_load_is_not_waited_for(tmp_path: Path) -> None:
+    program = tmp_path / "long.nc"
+    program.write_text("".join(f"G1 X{k % 97} Y{k % 89}.5 F1200\n" for k in range(1_500_000)) + "M30\n")
+    served = Process("--plain", "mill3", "--program", program, "--doors", "http=0,shdr=0")
+    took_s, error = served.end(signal.SIGTERM)
+    assert (served.process.returncode, error) == (143, "")
+    assert took_s < LATE_S + 5 * slow_s()
 
 
 def check_kept(memory: Path) -> None:

@@ -252,7 +252,8 @@ def test_the_chart_draws_only_what_the_trace_has(chromium: Any, tmp_path: Path) 
             np.array([np.nan if value is None else value for value in drawn[name]], np.float64)
             for name in ("x", "line", "low", "high", "mean")
         )
-        at = np.abs(trace.t_s[None, :] - x[:, None]).argmin(axis=1)
+        after = np.clip(np.searchsorted(trace.t_s, x), 1, trace.t_s.size - 1)
+        at = after - (x - trace.t_s[after - 1] < trace.t_s[after] - x)
         known = np.isfinite(line)
         assert np.abs(line[known] - speed[at][known]).max() < 8.0  # the view's tolerance is 6 mm/min
         for begin, end in pairwise(np.flatnonzero(known)):

@@ -25,10 +25,11 @@ def run(rig: Rig) -> np.ndarray:
 
 
 @pytest.mark.covers("apci.rule.lookahead", "apci.MODEREG.0.lookahead", "apci.var.MDVEL", "apci.wrMDVel")
+@pytest.mark.covers("apci.MODEREG.6")  # which changes nothing of it
 @pytest.mark.parametrize("mdvel", [0.0, 5.0, 1000.0])
 def test_velocity_is_lowered_so_that_no_axis_jumps_more_than_it_stands(mdvel: float) -> None:
     corners = []
-    for mode in (0, ModeReg.lookahead):
+    for mode in (0, ModeReg.lookahead, ModeReg.lookahead | ModeReg.bit6):
         rig = Rig()
         rig.board.modereg = mode
         rig.board.axes[0].MDVEL = mdvel

@@ -57,6 +57,7 @@ def go(pc: Pc, an: int, target: float) -> None:
 # ---------------------------------------------------------------------- loops and resets
 
 
+@pytest.mark.covers("apci.rddigob", "apci.rdrv")
 @pytest.mark.covers("apci.cl", "apci.ol", "apci.ctrl.loop", "apci.rule.relays")
 def test_cl_takes_over_the_actual_position_and_sets_pae_and_ol_resets_it(pc: Pc) -> None:
     axes = pcap.AS.of(0)
@@ -82,6 +83,7 @@ def test_cl_takes_over_the_actual_position_and_sets_pae_and_ol_resets_it(pc: Pc)
     assert (record.mcp, pcap.rdaxstb(0, 14), pcap.rddigob(0, 1)) == (0, 0, 0)
 
 
+@pytest.mark.covers("apci.rdMCiS")
 @pytest.mark.covers("apci.cl", "apci.rule.spooler_discard")
 def test_cl_rejects_the_queue(pc: Pc) -> None:
     axes = pc.close(0)
@@ -91,6 +93,7 @@ def test_cl_rejects_the_queue(pc: Pc) -> None:
     assert pcap.rdMCiS(0) == 0
 
 
+@pytest.mark.covers("apci.rdrv")
 @pytest.mark.covers("apci.clv", "apci.js")
 def test_clv_lets_a_moving_axis_go_on_until_js_stops_it(pc: Pc) -> None:
     record = pcap.TSRP(an=0, mcp=8192)  # a quarter of 200 mm/s
@@ -108,6 +111,7 @@ def test_clv_lets_a_moving_axis_go_on_until_js_stops_it(pc: Pc) -> None:
     assert pcap.rdrv(0) == near(0.0, abs=1e-9)
 
 
+@pytest.mark.covers("apci.rdMCiS")
 @pytest.mark.covers("apci.ra", "apci.rule.override_reset", "apci.rule.referenced", "apci.wrjovr")
 def test_ra_resets_its_axes_and_keeps_their_parameters(pc: Pc) -> None:
     axes = pc.close(0, 2)
@@ -127,6 +131,7 @@ def test_ra_resets_its_axes_and_keeps_their_parameters(pc: Pc) -> None:
     assert pcap.rdaxstb(2, Axst.cl.bit_length()) == 1
 
 
+@pytest.mark.covers("apci.rdMCiS", "apci.rdtrovr")
 @pytest.mark.covers("apci.rs", "apci.rule.commonpersist", "apci.rule.override_reset", "apci.rule.referenced")
 def test_rs_resets_all_axes_and_keeps_parameters_common_variables_and_ifs(pc: Pc) -> None:
     axes = pc.close(0, 1, 2)
@@ -173,10 +178,13 @@ def test_a_stepper_is_not_referenced_any_more_when_its_loop_opens_or_closes(pc: 
 
 @pytest.mark.covers("apci.RPtoDP", "apci.rule.versions")
 def test_rptodp_takes_the_actual_position_as_setpoint_where_no_profile_runs() -> None:
-    for revision, expected in (("V2.5.3.100", 0.0), ("V2.5.3.99", 2.0)):
+    for revision, expected in (("V2.5.3.100", 12.0), ("V2.5.3.99", 14.0)):
         pc = Pc('[[axis]]\n[axis.plant]\nkind = "lag"\n', revision=revision)
+        pcap.wrrp(pcap.TSRP(an=0, rp=5.0))  # the machine zero is elsewhere, and the axis not at it
         axes = pc.close(0)
-        pcap.wrdp(pcap.TSRP(an=0, dp=2.0))
+        pcap.wrdp(pcap.TSRP(an=0, dp=12.0))
+        pc.run(2.0)
+        pcap.wrdp(pcap.TSRP(an=0, dp=14.0))
         record = pcap.TSRP(an=0)
         pc.board.kernel.servo.row[0]["kp"] = 0.0  # it cannot follow
         pc.board.advance(2)
@@ -334,7 +342,8 @@ def test_inputs_by_word_and_by_number(pc: Pc, number: int) -> None:
     assert pcap.rddigib(2, 17 if number == 16 else number + 1) == (1 if number == 4 else 0)
 
 
-@pytest.mark.covers("apci.digi.16", "apci.rddigib.bitnr.17", "apci.rddigib.bitnr.25-32")
+@pytest.mark.covers("apci.digi.16", "apci.rddigib.bitnr.17", "apci.rddigib.bitnr.25-32", "apci.rddigi")
+@pytest.mark.covers("apci.rddigib", "apci.TSRP.digi")
 def test_the_index_signal_is_seen_while_the_encoder_passes_it(pc: Pc) -> None:
     axes = pc.close(0)
     pc.tsrp[0].tp = 6.0
@@ -343,6 +352,14 @@ def test_the_index_signal_is_seen_while_the_encoder_passes_it(pc: Pc) -> None:
     while not pcap.rdaxstb(0, 13):
         before = pc.rp(0)
         pc.board.advance(1)
+        own, other = pcap.TSRP(an=0), pcap.TSRP(an=1)
+        pcap.rddigi(own)
+        pcap.rddigi(other)
+        assert (own.digi >> 16 & 1, other.digi >> 16 & 1) == (
+            pcap.rddigib(0, 17),
+            0,
+        )  # the signal of this axis
+        assert pcap.rddigib(1, 17) == 0
         if pcap.rddigib(0, 17):
             seen.append((before, pc.rp(0)))
         assert not any(pcap.rddigib(0, bit) for bit in range(25, 33))
@@ -388,6 +405,7 @@ def test_outputs_by_word_and_by_number(pc: Pc, number: int) -> None:
     assert record.digo == 0xFF & ~(1 << (number - 1))
 
 
+@pytest.mark.covers("apci.rddigob")
 @pytest.mark.covers("apci.wrdigob.bitnr.9-32", "apci.digo.8-31", "apci.const.digout")
 def test_there_are_no_outputs_beyond_the_eighth(pc: Pc) -> None:
     record = pcap.TSRP(an=0, digo=-1)
@@ -424,8 +442,12 @@ def test_each_light_is_switched_by_itself(pc: Pc, colour: str) -> None:
     assert [light() for light in lights.values()] == [0, 0, 0]
     getattr(pcap, f"wrled{colour}")(1)
     assert {name for name, light in lights.items() if light() == 1} == {colour}
+    for name in lights:
+        getattr(pcap, f"wrled{name}")(1)
     getattr(pcap, f"wrled{colour}")(0)
-    assert lights[colour]() == 0
+    assert {name for name, light in lights.items() if light() == 0} == {colour}
+    getattr(pcap, f"wrled{colour}")(-4)  # anything but 0 is on
+    assert [light() for light in lights.values()] == [1, 1, 1]
 
 
 # ---------------------------------------------------------------------- latches, recording, interrupts

@@ -65,7 +65,7 @@ def test_a_program_boots_a_board_and_initialises_the_system(tmp_path: Path) -> N
     assert (tsrp[0].rp, pcap.rdaxstb(0, 13)) == (1.0, 0)  # not read: it must be initialised again
 
 
-@pytest.mark.covers("apci.InitMcuSystem", "apci.InitMcuSystem2", "apci.txbf")
+@pytest.mark.covers("apci.InitMcuSystem", "apci.InitMcuSystem2", "apci.InitMcuSystem3", "apci.txbf")
 def test_the_older_ways_to_initialise(tmp_path: Path) -> None:
     (tmp_path / "rwmos.elf").write_bytes(b"\x7fELF")
     (tmp_path / "folder").mkdir()
@@ -82,6 +82,16 @@ def test_the_older_ways_to_initialise(tmp_path: Path) -> None:
         else:
             assert pcap.InitMcuSystem2(tsrp, 0, "folder/my.dat") == 0
         assert tsrp[0].jac == 55.0
+    # A board that runs with its defaults takes the file that is named, even by the oldest of them.
+    for initialise_it in (
+        pcap.InitMcuSystem,
+        lambda tsrp: pcap.InitMcuSystem2(tsrp, 0, "system.dat"),
+        lambda tsrp: pcap.InitMcuSystem3(tsrp, pcap.ROSI(), 0, "system.dat")[0],
+    ):
+        pcap.attach(Board(), folder=tmp_path)
+        tsrp = pcap.tsrp_array()
+        assert initialise_it(tsrp) == 0
+        assert (tsrp[0].jac, tsrp[17].an) == (55.0, 17)
 
 
 @pytest.mark.covers("apci.InitMcuSystem.ret.31", "apci.InitMcuSystem.ret.34")
@@ -262,6 +272,7 @@ def test_an_unknown_axis_is_an_unknown_error(name: str) -> None:
     assert returned == ((1, 0) if isinstance(returned, tuple) else 1)
 
 
+@pytest.mark.covers("apci.rdErrorReg", "apci.rdirqpc", "apci.rdrv")
 @pytest.mark.covers("apci.pcap.general.timeout")
 def test_functions_without_a_status_do_nothing_when_the_board_does_not_answer() -> None:
     pc = Pc()

@@ -121,6 +121,14 @@ def test_jogs_obey_what_was_written_before(pc: Pc) -> None:
     pc.scans_until_rest()
     pc.board.advance(10)
     assert (pcap.rdaxstb(0, 13), pc.dv(0)) == (1, near(17.0))  # ended, and goes on
+    for target, jtv, velocity in ((-60.0, 17.0, -17.0), (60.0, -13.0, -13.0)):  # counted the way of travel
+        pcap.js(axes)
+        pc.scans_until_rest()
+        pcap.wrjtvl(pcap.TSRP(an=0, jtv=jtv))
+        pc.tsrp[0].tp = target
+        pcap.jr(axes, pc.tsrp)
+        pc.scans_until_rest()
+        assert pc.dv(0) == near(velocity)
 
 
 @pytest.mark.covers("apci.jhl", "apci.jhr", "apci.wrhac", "apci.wrhvl", "apci.TSRP.hac", "apci.TSRP.hvl")
@@ -236,6 +244,7 @@ def test_mlr_counts_from_where_the_axes_are_in_the_units_of_ctru(pc: Pc) -> None
     assert at(pc) == near((200.0, 0.0, 0.0, 0.0))
 
 
+@pytest.mark.covers("apci.rdErrorReg")
 @pytest.mark.parametrize("name", ["mla", "mlr"])
 @pytest.mark.covers("apci.mla", "apci.mlr")
 def test_a_line_that_cannot_be_is_not_begun(pc: Pc, name: str) -> None:
@@ -258,6 +267,7 @@ def test_a_line_that_cannot_be_is_not_begun(pc: Pc, name: str) -> None:
     assert at(pc) == (0.0,) * 4
 
 
+@pytest.mark.covers("apci.rdErrorReg")
 @pytest.mark.covers("apci.mca", "apci.mcr")
 def test_a_circle_needs_two_axes_and_a_radius(pc: Pc) -> None:
     axes = pc.close(0, 1)
@@ -381,6 +391,7 @@ def test_ssms_starts_only_axes_at_rest_in_position_control(pc: Pc) -> None:
     assert (pc.rp(0), pcap.rdaxstb(0, 13)) == (0.0, 1)
 
 
+@pytest.mark.covers("apci.rddigob")
 @pytest.mark.covers("apci.ssf", "apci.ssfi", "apci.ssfni", "apci.smlai", "apci.smlri", "apci.rdPcapIndex")
 @pytest.mark.covers("apci.var.PcapIndex")
 def test_special_functions_run_in_their_turn_and_indices_show_what_is_executed(pc: Pc) -> None:

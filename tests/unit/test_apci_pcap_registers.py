@@ -204,6 +204,7 @@ def test_the_trajectory_override_reads_as_programmed_and_jovr_shows_what_is_in_f
     assert pcap.rdtrovr() == 0.5  # only factors above 0
 
 
+@pytest.mark.covers("apci.rdSampleTime")
 @pytest.mark.covers("apci.rdslsp", "apci.ret.bool.1", "apci.ret.bool.0")
 def test_slsp_is_read_with_1_for_success_and_only_positive_values_are_written(pc: Pc) -> None:
     assert pcap.rdslsp(1) == (1, 4000.0)
@@ -300,6 +301,7 @@ def test_the_target_is_that_of_the_last_travel_command_and_always_absolute(pc: P
 
 
 @pytest.mark.covers("apci.rdrp", "apci.rddp", "apci.rddv", "apci.rdrv", "apci.rdPosErr", "apci.TSRP.dv")
+@pytest.mark.covers("apci.profile.acceleration", "apci.profile.max_velocity", "apci.wrjac", "apci.wrjvl")
 @pytest.mark.covers("apci.TSRP.rp", "apci.TSRP.dp", "apci.var.dv", "apci.var.rv", "apci.var.PosErr")
 def test_positions_and_velocities_during_a_jog() -> None:
     pc = Pc(
@@ -311,7 +313,12 @@ def test_positions_and_velocities_during_a_jog() -> None:
         write(record)
     pc.tsrp[0].tp = 100.0
     pcap.ja(axes, pc.tsrp)
-    scans = LATENCY + round(1.28 / SCAN_S)
+    ramp = round(0.32 / SCAN_S)
+    pc.board.advance(LATENCY + ramp)  # on the ramp the axis is slower than its setpoint, by a / kp
+    pcap.rddv(record)
+    assert record.dv == near(100.0 * 0.32 * 60.0, abs=60.0 * 100.0 * SCAN_S)
+    assert pcap.rdrv(0) == near(60.0 * (100.0 * 0.32 - 100.0 / 20.0), rel=0.02)
+    scans = round(1.28 / SCAN_S) - ramp
     pc.board.advance(scans)  # 1.28 s after the start: 0.5 s of ramp, 12.5 mm, and 0.78 s at 50 mm/s
     pcap.rddp(record)
     pcap.rddv(record)
@@ -398,9 +405,26 @@ def test_the_axis_status_by_word_and_by_bit(pc: Pc) -> None:
     assert (pcap.rdaxstb(0, 13), pcap.rdaxstb(0, 14)) == (0, 1)  # pe and cl: bits count from 1
     pcap.rdaxst(record)
     assert record.axst & Axst.pe == 0
+    other = pcap.TSRP(an=1)  # open, and at rest
+    pcap.rdaxst(other)
+    assert other.axst & (Axst.pe | Axst.cl) == Axst.pe
+    pcap.rdap(other)
+    assert other.axst & (Axst.pe | Axst.cl) == Axst.pe
     pc.scans_until_rest()
     assert (pcap.rdaxstb(0, 13), pcap.rdaxstb(1, 14)) == (1, 0)
     assert [pcap.rdaxstb(0, bit) for bit in (0, -1, 33)] == [0, 0, 0]
+    lmp = pcap.LMP(ac=100.0, vl=50.0, dtm=[5.0, *[0.0] * 17])  # queued moves have one end, that of the last
+    for _ in range(2):
+        pcap.smlr(axes, lmp)
+        pcap.ssf(0, 1003, 100)
+    pcap.smlr(axes, lmp)
+    pcap.ssms(axes)
+    seen = []
+    for _ in range(1200):
+        pc.board.advance(1)
+        seen.append(pcap.rdaxstb(0, 13))
+    assert seen == sorted(seen)
+    assert (seen[5], seen[-1], pc.rp(0)) == (0, 1, 25.0)
 
 
 @pytest.mark.covers("apci.rdlsm", "apci.rdMCiS", "apci.TSRP.lsm", "apci.const.spoolmem")
@@ -482,9 +506,17 @@ def test_variables_of_special_firmware(pc: Pc) -> None:
     pcap.wrSysVarInt(1, -7)
     pcap.wrSysVarDbl(1, 0.5)
     pcap.wrAxVarInt(2, 1, 2**31)  # does not fit into 32 bits
-    pcap.wrAxVarDbl(2, 1, 1.5)
+    pcap.wrAxVarDbl(2, 1, -1000.0 / 3.0)
     assert (pcap.rdSysVarInt(1), pcap.rdSysVarDbl(1)) == (-7, 0.5)
-    assert (pcap.rdAxVarInt(2, 1), pcap.rdAxVarDbl(2, 1)) == (-(2**31), 1.5)
+    assert (pcap.rdAxVarInt(2, 1), pcap.rdAxVarDbl(2, 1)) == (-(2**31), -1000.0 / 3.0)
+    pcap.wrSysVarDbl(1, 1.0 / 3.0)
+    pcap.wrSysVarInt(1, 123_456_789)
+    pcap.wrAxVarInt(2, 1, -123_456_789)
+    assert (pcap.rdSysVarInt(1), pcap.rdSysVarDbl(1), pcap.rdAxVarInt(2, 1)) == (
+        123_456_789,
+        1.0 / 3.0,
+        -123_456_789,
+    )
     assert (pcap.rdSysVarInt(0), pcap.rdSysVarDbl(0), pcap.rdAxVarInt(1, 1), pcap.rdAxVarDbl(2, 0)) == (
         0,
     ) * 4

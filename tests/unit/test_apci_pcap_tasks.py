@@ -127,6 +127,10 @@ def test_common_doubles_singly_and_all_at_once(pc: Pc) -> None:
         pcap.wrcd(number, written)
     pcap.rdcd(7, read)
     assert (read.cd[6], read.cd[7], read.cd[8]) == (0.0, 7.5, 0.0)
+    for number in (101, 999):
+        alone = pcap.CDBUF()
+        pcap.rdcd(number, alone)
+        assert {k: value for k, value in enumerate(alone.cd) if value} == {number: number + 0.5}
     pcap.rdcd(100, read)  # the first hundred: CD100 cannot be read by itself
     assert read.cd[:100] == written.cd[:100]
     assert read.cd[100:] == [0.0] * 900
@@ -149,6 +153,10 @@ def test_common_integers_singly_and_all_at_once(pc: Pc) -> None:
         pcap.wrci(number, written)
     pcap.rdci(7, read)
     assert (read.ci[6], read.ci[7], read.ci[8]) == (0, -7, 0)
+    for number in (101, 999):
+        alone = pcap.CIBUF()
+        pcap.rdci(number, alone)
+        assert {k: value for k, value in enumerate(alone.ci) if value} == {number: -number}
     pcap.rdci(100, read)
     assert read.ci[:100] == written.ci[:100]
     assert read.ci[100:] == [0] * 900

@@ -298,6 +298,8 @@ def test_move_another_way_keeps_the_magnitude_of_the_velocity() -> None:
 
 
 @pytest.mark.covers("apci.profile.move.preconditions", "apci.axst.8.dhef", "apci.rule.dhef_reset")
+@pytest.mark.covers("apci.profile.acceleration", "apci.profile.max_velocity")
+@pytest.mark.covers("apci.ErrorReg.12.VelocityZero", "apci.ErrorReg.13.AccelZero")
 @pytest.mark.parametrize(
     "speeds", [Speeds(-A, TOP), Speeds(A, -TOP), Speeds(A, math.nan), Speeds(A, math.inf)]
 )
@@ -311,6 +313,7 @@ def test_move_with_impossible_speeds_is_discarded(speeds: Speeds, spool: bool) -
     assert rig.bits() & Axst.pe
     assert rig.board.axes[0].dp == 0.0
     assert rig.free_entries() == free
+    assert rig.board.errorreg == 0  # below 0 is not 0
     assert [bool(rig.bits(i) & Axst.dhef) for i in rig.all] == [True, True, False]
     for command in (ol, cl, js):
         command(rig.board, (0, 1))

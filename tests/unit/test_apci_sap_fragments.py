@@ -35,6 +35,15 @@ def test_the_pipe_example_as_printed() -> None:
     assert board.tasks.rdcncts(0).errnum == 0
 
 
+@pytest.mark.covers("sap.comment")
+def test_a_comment_reaches_to_the_end_of_its_line_whatever_stands_in_it() -> None:
+    board = run_text(
+        "CI0 := 1; // CI0 := 2; { it's (* not // finished\n"
+        "CI1 := 3; {CI1 := 4; // }\n CI2 := 5; (* CI2 := 6;\n*) CI3 := 7 // ; CI3 := 8\n ; CI4 := 9;"
+    )
+    assert [board.ci(k) for k in range(5)] == [1, 3, 5, 7, 9]
+
+
 def test_application_variables_as_printed() -> None:
     board = FakeBoard()
     board.system["sysvarint", 1] = 77

@@ -3,16 +3,23 @@
 from __future__ import annotations
 
 from itertools import pairwise
+from typing import Any
 
 import pytest
 
 from polycnc.controllers.apci import sap
 from polycnc.controllers.apci.board._axis_commands import cl
 from polycnc.controllers.apci.board._move_commands import Speeds, mlr
+from polycnc.controllers.apci.core import _turn_values
 from support.sap_on_board import Sap
 
 REFERENCED, LATCHED, RIGHT_SOFT_LIMIT = 1 << 17, 1 << 16, 1 << 6
 JOG = "A1.jac := 100; A1.jvl := 50; A1.jtvl := 0; "
+_SHOWN = (
+    *("hard_limit", "soft_limit", "position_error", "dhef", "cef", "pe", "closed", "in_position", "lpsf"),
+    *("referenced", "saf", "index_now", "encoder_error", "index_seen", "strobe_seen"),
+)
+MEANT = 0x000FF3FE  # the bits of axst that have a meaning
 
 
 def test_every_register_of_the_tables_exists_on_the_board() -> None:
@@ -149,6 +156,36 @@ def test_reading_lp_takes_the_latched_position_and_clears_its_flag() -> None:
     assert axis.ci(0) & LATCHED
     assert axis.cd(0) == 7.0
     assert not axis.ci(1) & LATCHED
+
+
+def uncompiled(function: Any) -> Any:
+    """Return a compiled function as Python, which need not be compiled by itself."""
+    return getattr(function, "py_func", function)
+
+
+@pytest.mark.covers("apci.axst.0", "apci.axst.10", "apci.axst.11", "apci.axst.20-31")
+@pytest.mark.covers("sap.axis.digi", *(f"apci.digi.{bit}" for bit in range(16, 20)))
+def test_a_program_reads_the_status_and_signals_that_the_pc_reads() -> None:
+    axis = Sap()
+    own, state = axis.board.axes[1], axis.board.state
+    sources = [(state.axis[1], name) for name in _SHOWN]
+    sources += [(state.plan[1], name) for name in ("EO", "DR", "UI", "REF")]
+    shown = 0
+    for inputs in (0, 1):
+        state.board[0]["inputs"] = inputs
+        for row, name in [*sources, *sources]:  # one after the other on, then off again
+            row[name] = 0 if row[name] else 3 if name.endswith("_limit") else 1
+            values = [
+                int(uncompiled(each)(state, 1)) for each in (_turn_values._status, _turn_values._signals)
+            ]
+            assert values == [own.status_word, int(own.digi)], name
+            shown |= values[0]
+            assert values[0] & ~MEANT == 0
+    assert shown == MEANT
+    for name in state.axis.dtype.names or ():  # and nothing else shows in it
+        if state.axis.dtype[name].kind == "i":
+            state.axis[1][name] = 3
+    assert int(uncompiled(_turn_values._status)(state, 1)) == own.status_word == own.status_word & MEANT
 
 
 def test_events_watch_the_board_in_every_scan() -> None:

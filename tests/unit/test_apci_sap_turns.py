@@ -14,6 +14,7 @@ from polycnc.controllers.apci.board._move_commands import Speeds, mlr
 from polycnc.controllers.apci.board._spool_commands import ssms
 from polycnc.controllers.apci.board._system_file import parse_system_file
 from polycnc.controllers.apci.sap._board_host import BoardTasks
+from support.often import often
 from support.sap_on_board import TWO_AXES
 
 HEAD = """
@@ -195,7 +196,7 @@ def run(seed: int, programs: list[str], away: bool, monkeypatch: pytest.MonkeyPa
     return seen
 
 
-@pytest.mark.parametrize("seed", range(24))
+@pytest.mark.parametrize("seed", often(range(24), 8))
 def test_random_programs_do_the_same_in_the_compiled_scan(seed: int, monkeypatch: pytest.MonkeyPatch) -> None:
     source = Programs(seed)
     programs = [source.program() for _ in range(4)]

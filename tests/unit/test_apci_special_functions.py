@@ -132,7 +132,9 @@ def test_wait_for_inputs() -> None:
 
 
 @pytest.mark.covers("apci.ssf.1005", "apci.ssf.1015", "apci.ssf.1025", "apci.ssf.waitnotes", "apci.ClearCI99")
-@pytest.mark.parametrize(("command", "value", "written"), [(1005, 6.0, 6), (1015, 3.0, 6), (1025, 0.0, 0b11)])
+@pytest.mark.parametrize(
+    ("command", "value", "written"), [(1005, 6.0, 6), (1015, 3.0, 6), (1015, -3.5, -6), (1025, 0.0, 0b11)]
+)
 def test_waits_for_ci99_go_on_together(command: int, value: float, written: int) -> None:
     rig = Rig()
     for i in (0, 1):

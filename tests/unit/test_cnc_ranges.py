@@ -2,6 +2,10 @@
 
 from __future__ import annotations
 
+import inspect
+import math
+import re
+from contextlib import suppress
 from dataclasses import replace
 from datetime import datetime
 from pathlib import Path
@@ -47,7 +51,7 @@ from polycnc.cnc._program_edit import ProgramEdits
 from polycnc.cnc._program_memory import first_comment
 from polycnc.cnc._reference_steps import reference_steps
 from polycnc.cnc._tool_times import ToolTimes
-from polycnc.errors import ProgramError, UsageError
+from polycnc.errors import PolycncError, ProgramError, UsageError
 from polycnc.machine import Clock, MachineConfig, Store, TimesConfig
 from polycnc.nc import ProgramText
 from support.cnc_control import control, started
@@ -515,3 +519,40 @@ def test_time_passes_no_further_than_it_was_asked_to() -> None:
 
     assert made.advance(50, until=until) == 3
     assert asked == [8, 9, 10]
+
+
+_ODD = (1e308, 1e-308, math.inf, -math.inf, math.nan, 0, -1, 10**400, -(10**400), 10**5000, -(10**5000))
+_NUMBERS = [
+    (name, each.name)
+    for name, command in vars(Control).items()
+    if inspect.isfunction(command) and name[0] != "_"
+    for each in inspect.signature(command).parameters.values()
+    if re.search(r"\b(int|float)\b", str(each.annotation))
+]
+
+
+@pytest.mark.parametrize(("command", "argument"), [each for each in _NUMBERS if each[0] != "advance"])
+def test_no_number_of_a_command_is_more_than_refused(command: str, argument: str) -> None:
+    """Python writes no whole number of over 4,300 digits, and makes no float of one beyond 1.8e308."""
+    parameters = inspect.signature(getattr(Control, command)).parameters
+    whole = "float" not in str(parameters[argument].annotation)
+    for odd in (each for each in _ODD if isinstance(each, int) or not whole):
+        made = Control(CONFIG, data=ControlData(reference_required=False))
+        others = {
+            each.name: "X" if "str" in str(each.annotation) else 1
+            for each in parameters.values()
+            if each.default is inspect.Parameter.empty and each.name not in ("self", argument)
+        }
+        value = frozenset({odd}) if "frozenset" in str(parameters[argument].annotation) else odd
+        with suppress(PolycncError):
+            getattr(made, command)(**others, **{argument: value})
+        assert not {math.inf, -math.inf} & {axis.relative for axis in made.status().axes.values()}
+
+
+def test_no_number_of_a_table_is_more_than_refused() -> None:
+    made = Control(CONFIG)
+    for odd in (math.inf, -math.inf, math.nan, 10**400, -(10**400), 10**5000):
+        _refused(Refusal.DATA, lambda odd=odd: made.offsets.set("G54", {"X": odd}), "G54 X cannot be")
+        _refused(Refusal.DATA, lambda odd=odd: made.tools.set(7, length_mm=odd), "length_mm cannot be")
+    with pytest.raises(UsageError, match="a manual speed of a number without end"):
+        ManualData(jog_share=-(10**5000))

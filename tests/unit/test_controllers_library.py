@@ -415,3 +415,19 @@ def test_a_variant_has_other_lengths_or_packing_and_the_same_elements() -> None:
 
 def test_codes_are_numbers_with_a_text() -> None:
     assert (Tape(3), Tape.NUMBER + 1, Tape.HANDLE.text) == (Tape.NUMBER, 4, "this is no handle")
+
+
+@pytest.mark.parametrize("size", [400, 5000], ids=str)  # Python writes no number of over 4,300 digits
+@pytest.mark.parametrize("number", [1, -1], ids=["positive", "negative"])
+def test_a_number_of_any_length_is_refused_in_a_sentence(program: Program, number: int, size: int) -> None:
+    _, handle = program.tp_open(4)
+    long = number * 10**size
+    for call, given in (
+        (program.tp_write, (handle, long, 2)),
+        (program.tp_describe, (handle, long, "x")),
+        (program.tp_describe, (handle, Reel(), long)),
+        (program.tp_read, (handle, [long], 1)),
+    ):
+        with pytest.raises(UsageError, match="cannot be") as told:
+            call(*given)
+        assert len(str(told.value)) < 700

@@ -80,6 +80,7 @@ def test_program_positions_have_shifts_and_inches(root: Root) -> None:
     assert [found[f"#{name}"] for name in "DEFG"] == pytest.approx([1, 2, 2, 2])
 
 
+@pytest.mark.covers("cpl.PPOS")
 @pytest.mark.parametrize(
     "call",
     [
@@ -314,5 +315,6 @@ def test_a_permanent_variable_without_a_value_stays_so_where_nothing_sets_it(roo
     assert (found["@7"], found["@8"]) == (None, None)
 
 
+@pytest.mark.covers("cpl.NCF")
 def test_ncf_needs_a_string_with_room(root: Root) -> None:
     assert root.error('1 A$=NCF("G1")').startswith("1: inadmissible assignment")

@@ -466,6 +466,7 @@ def test_erase_tells_what_became_of_the_file(root: Root) -> None:
     assert "MSG: P4 was not erased: it is active" in [message.text for message in result.messages]
 
 
+@pytest.mark.covers("cpl.ERASE")
 @pytest.mark.covers("cpl.ERASE.ret.2")
 def test_a_protected_file_is_not_erased(root: Root) -> None:
     root.write("P2", END)

@@ -68,6 +68,7 @@ def test_a_program_of_plain_blocks_needs_no_cpl() -> None:
         assert holds_cpl(b"N1 G1\r\n" + line + b"\r\n"), line
 
 
+@pytest.mark.covers("cpl.AXP", "cpl.COS")
 @pytest.mark.covers("cpl.bracket", "cpl.ex.361")
 def test_brackets_hold_expressions_of_nc_words() -> None:
     host = RecordingHost(
@@ -511,6 +512,7 @@ def test_din_takes_a_sub_program_out_of_linking() -> None:
         assert error.position.line == 2
 
 
+@pytest.mark.covers("cpl.LEN")
 @pytest.mark.covers("cpl.PDIM", "cpl.ex.1161", "cpl.err.INVALID_VARIABLE")
 def test_pdim_makes_room_for_a_text_of_an_unlinked_program() -> None:
     def run(sub: str, first: str = "N10 (DIN)") -> Ran:
@@ -620,6 +622,7 @@ def test_a_place_without_a_value_is_none_that_was_left_out(text: str) -> None:
     assert error.position.line == 2
 
 
+@pytest.mark.covers("cpl.APOS")
 def test_functions_of_the_control_get_their_arguments_and_set_variables() -> None:
     seen: list[tuple[object, ...]] = []
 

@@ -168,6 +168,7 @@ def test_cursor_keys_have_codes_of_their_own(tmp_path: Path, key: str, code: int
     assert [found[f"#{name}%"] for name in "ABC"] == [97, code, 98]
 
 
+@pytest.mark.covers("cpl.ASC")
 @pytest.mark.covers("cpl.ascii")
 @pytest.mark.parametrize("code", range(128))
 def test_characters_have_their_standard_codes(code: int) -> None:
@@ -239,6 +240,7 @@ def test_trim_without_a_side_takes_blanks_from_both() -> None:
 # ---------------------------------------------------------------------- errors
 
 
+@pytest.mark.covers("cpl.FILEPOS", "cpl.INSTR")
 @pytest.mark.covers("cpl.err.INVALID_PARAMETER")
 @pytest.mark.parametrize(
     "wrong",

@@ -78,6 +78,7 @@ def test_a_hot_journal_can_be_written_by_no_program(counted: Root) -> None:
         assert not erased.area("cpl.permanent", dict)
 
 
+@pytest.mark.covers("cpl.ERASE")
 @pytest.mark.parametrize("name", COMPANIONS)
 def test_no_link_leads_to_the_memory(counted: Root, name: str) -> None:
     (counted.folder / "sub" / "up").symlink_to("..")

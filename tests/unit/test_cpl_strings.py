@@ -30,6 +30,7 @@ INADMISSIBLE = "inadmissible assignment to a non-dimensioned STRING variable"
 GAP = "CHARACTER FIELD NOT ASSIGNED (CHARACTER AREA NOT USED)"
 
 
+@pytest.mark.covers("cpl.LEN")
 @pytest.mark.covers("cpl.type.CHARACTER", "cpl.ex.721", "cpl.string.assign", "cpl.ex.3713", "cpl.ex.3702")
 def test_a_dimensioned_string_holds_as_much_as_its_dimension() -> None:
     lines = (
@@ -80,6 +81,7 @@ def test_a_string_variable_without_dimension_refers_to_its_source() -> None:
     assert part["#F$"] == "TUV"
 
 
+@pytest.mark.covers("cpl.LEN")
 @pytest.mark.covers("cpl.string.assign.fromfield")
 def test_only_the_written_part_of_a_field_is_passed_on() -> None:
     assert results("DIM A$(10)", 'A$="ABC"', "#B$=A$", "#N%=LEN(#B$)", 'A$="UVWXYZ"', "#C$=#B$") == {
@@ -155,6 +157,7 @@ def test_numbers_as_text(text: str, expected: str) -> None:
     assert results("DIM #A$(40)", "D!=2.3456789", f"#A$={text}")["#A$"] == expected
 
 
+@pytest.mark.covers("cpl.STR$")
 def test_what_str_cannot_write() -> None:
     for text in ('STR$("#",12)', 'STR$("none",1)'):
         assert failure("DIM A$(9)", f"A$={text}") == "FORMAT NOT PERMITTED"
@@ -172,6 +175,7 @@ def test_val_ends_where_the_number_does() -> None:
     assert results("#N%=VAL(A$)", '#M%=VAL("-")') == {"#N%": None, "#M%": None}
 
 
+@pytest.mark.covers("cpl.VAL")
 @pytest.mark.covers("cpl.ex.3550", "cpl.ex.3551", "cpl.ex.3552", "cpl.ex.3553", "cpl.ex.3555")
 @pytest.mark.parametrize(
     ("name", "text", "expected"),

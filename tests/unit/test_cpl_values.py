@@ -340,6 +340,7 @@ def test_division_is_never_whole() -> None:
     assert (error.what, error.position.line) == ("division by zero", 2)  # type: ignore[union-attr]
 
 
+@pytest.mark.covers("cpl.SIN")
 @pytest.mark.covers("cpl.op.paren", "cpl.op.precedence", "cpl.ex.870")
 def test_and_binds_tighter_than_a_comparison() -> None:
     for number, expected in ((5, "SET"), (4, "UNSET"), (2, "UNSET"), (3, "SET")):

@@ -127,10 +127,10 @@ def test_a_path_at_rest_with_nothing_queued_is_told_once() -> None:
 def test_events_stop_the_run_at_their_point_one_by_one() -> None:
     state = state_of()
     give_to_path(state, 0)
-    append_wait(state.seg, state.paths, 0, 0.0, 7, 1)
+    append_wait(state.seg, state.paths, 0, 0.0, 7, 1, 0)
     append_line(state.seg, state.paths, 0, state.limits, np.array([5.0, 0.0]), 50.0, 0, 2)
-    append_wait(state.seg, state.paths, 0, 0.0, 8, 3)
-    append_wait(state.seg, state.paths, 0, 0.0, 9, 4)
+    append_wait(state.seg, state.paths, 0, 0.0, 8, 3, 0)
+    append_wait(state.seg, state.paths, 0, 0.0, 9, 4, 0)
     finish(state)
     found = []
     for _ in range(3):
@@ -147,9 +147,9 @@ def test_an_event_of_one_path_is_not_told_again_with_that_of_another() -> None:
     state.paths.axis[0], state.paths.axis[1] = (0, -1), (1, -1)
     for g, (wait_s, event) in enumerate([(0.004, 7), (0.0, 8)]):
         give_to_path(state, g)
-        append_wait(state.seg, state.paths, g, wait_s, -1, 1)
-        append_wait(state.seg, state.paths, g, 0.0, event, 2)
-        append_wait(state.seg, state.paths, g, 0.003, -1, 3)
+        append_wait(state.seg, state.paths, g, wait_s, -1, 1, 0)
+        append_wait(state.seg, state.paths, g, 0.0, event, 2, 0)
+        append_wait(state.seg, state.paths, g, 0.003, -1, 3, 0)
         state.paths.row[g]["closed"] = 1
         prepare_path(state.seg, state.paths, g, state.limits, CYCLE_S, state.work)
         start_path(state.paths, g)
@@ -163,7 +163,7 @@ def test_an_event_of_one_path_is_not_told_again_with_that_of_another() -> None:
 def test_a_wait_takes_whole_cycles_at_rest() -> None:
     state = state_of()
     give_to_path(state, 0)
-    append_wait(state.seg, state.paths, 0, 0.0025, -1, 1)
+    append_wait(state.seg, state.paths, 0, 0.0025, -1, 1, 0)
     append_line(state.seg, state.paths, 0, state.limits, np.array([5.0, 0.0]), 50.0, 0, 2)
     finish(state)
     assert run_until(state, PATH_RESTED) == 3 + 150

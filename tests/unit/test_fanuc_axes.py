@@ -29,6 +29,7 @@ def read(name: str, handle: int, axis: int, length: int) -> tuple[EW, list[int]]
 # ---------------------------------------------------------------------- handles
 
 
+@pytest.mark.covers("fanuc.cnc_rdprgnum")
 @covers("cnc_allclibhndl", "cnc_freelibhndl", "concept.handle_lifecycle")
 def test_a_handle_is_opened_used_and_closed() -> None:
     control, handle = attached()
@@ -49,6 +50,7 @@ def test_a_handle_is_opened_used_and_closed() -> None:
         assert fwlib.cnc_freelibhndl(handle) == OK
 
 
+@pytest.mark.covers("fanuc.cnc_absolute")
 @covers("cnc_allclibhndl2", "range.node")
 def test_nodes_0_to_7_are_controls_of_their_own() -> None:
     attached()
@@ -73,6 +75,7 @@ def test_nodes_0_to_7_are_controls_of_their_own() -> None:
     assert fwlib.cnc_absolute(handles[7], 4, 8)[0] == OK
 
 
+@pytest.mark.covers("fanuc.cnc_absolute")
 def test_the_default_node_can_be_changed_and_nodes_be_listed() -> None:
     attached()
     fwlib.attach(5, PowerMate(axes=2, model="D"))
@@ -94,6 +97,7 @@ def test_the_default_node_can_be_changed_and_nodes_be_listed() -> None:
     assert fwlib.cnc_rdnodenum() == (OK, 2)
 
 
+@pytest.mark.covers("fanuc.cnc_absolute", "fanuc.cnc_allclibhndl")
 def test_a_fault_of_a_node_is_the_answer_of_every_call() -> None:
     control, _ = attached()
     node = fwlib.attach(0, control)
@@ -106,6 +110,7 @@ def test_a_fault_of_a_node_is_the_answer_of_every_call() -> None:
     assert fwlib.cnc_absolute(handle, 1, 8)[0] == OK
 
 
+@pytest.mark.covers("fanuc.cnc_download", "fanuc.cnc_freelibhndl")
 def test_closing_a_handle_breaks_its_transfers_off_and_no_others() -> None:
     control, handle = attached()
     _, other = fwlib.cnc_allclibhndl()
@@ -119,6 +124,7 @@ def test_closing_a_handle_breaks_its_transfers_off_and_no_others() -> None:
     assert fwlib.cnc_dwnstart(handle) == OK
 
 
+@pytest.mark.covers("fanuc.cnc_freelibhndl", "fanuc.cnc_relative")
 def test_two_sessions_have_handles_of_their_own() -> None:
     control, handle = attached()
     session = fwlib.Session()
@@ -152,6 +158,7 @@ def test_example_actual_feed() -> None:
     assert fwlib.cnc_actf(handle)[1].data == 0
 
 
+@pytest.mark.covers("fanuc.cnc_actf")
 def test_actual_feed_in_inch_has_two_decimals() -> None:
     control, handle = attached(inch_input=True)
     registered(control, O7="\nG1 X12. F55.5\nM30\n")
@@ -189,7 +196,7 @@ def test_example_relative_of_a_rotary_axis_is_not_folded() -> None:
 @covers("example.cnc_distance", "cnc_distance")
 def test_example_distance_is_twice_the_real_one() -> None:
     control, handle = attached(axes=4, rotary=(3,))
-    assert [control.axis_name(axis) for axis in (1, 2, 3, 4)] == ["X", "Y", "A", "Z"]
+    assert [control.units.axis_name(axis) for axis in (1, 2, 3, 4)] == ["X", "Y", "A", "Z"]
     control.control.set_overrides(feed=1e-3)
     control.select_mode("MDI")
     control.mdi.put(b"\nO1\nG91G1X-17.3Y30.009A-.18Z4.F600\nM30\n%")
@@ -219,6 +226,7 @@ def test_example_relative_preset_to_the_origin() -> None:
     assert read("relative", handle, 2, 8)[1][0] == 77
 
 
+@pytest.mark.covers("fanuc.cnc_wrrelpos")
 @covers("cnc_wrrelpos.err.EW_LENGTH", "cnc_wrrelpos.err.EW_ATTRIB", "cnc_wrrelpos.err.EW_DATA")
 def test_presets_that_are_refused_change_nothing() -> None:
     control, handle = attached()
@@ -239,6 +247,7 @@ def test_presets_that_are_refused_change_nothing() -> None:
 # ---------------------------------------------------------------------- what positions contain
 
 
+@pytest.mark.covers("fanuc.cnc_wrtofs")
 def test_positions_know_work_offsets_tool_length_and_units() -> None:
     control, handle = attached()
     control.parameters.set(1221, 10_000, 1)
@@ -318,6 +327,7 @@ def test_servo_delay_is_the_following_error() -> None:
     assert read("srvdelay", ideal, ALL_AXES, 16)[1] == [0] * 6
 
 
+@pytest.mark.covers("fanuc.cnc_actf")
 @covers("example.cnc_accdecdly", "cnc_accdecdly")
 def test_nothing_is_delayed_by_acceleration() -> None:
     control, handle = attached()
@@ -346,6 +356,9 @@ def test_lengths_and_axes_of_position_reads(name: str) -> None:
     assert read(name, handle, ALL_AXES, 28)[0] == OK
 
 
+@pytest.mark.covers(
+    "fanuc.cnc_dwnend", "fanuc.cnc_rdmacro", "fanuc.cnc_rdparam", "fanuc.cnc_rdtofs", "fanuc.cnc_wrtofs"
+)
 @covers("concept.option_none")
 def test_reads_need_no_option() -> None:
     control, handle = attached(options=False)
@@ -364,6 +377,7 @@ def test_reads_need_no_option() -> None:
 # ---------------------------------------------------------------------- everything at one moment
 
 
+@pytest.mark.covers("fanuc.cnc_actf")
 @covers("cnc_rddynamic", "concept.dynamic_snapshot", "example.cnc_rddynamic")
 @pytest.mark.covers(
     "fanuc.ODBDY.actf",
@@ -413,6 +427,7 @@ def test_the_dynamic_data_are_those_of_the_single_functions() -> None:
     assert data.pos.faxis.absolute[0] - data.pos.faxis.machine[0] == 1000
 
 
+@pytest.mark.covers("fanuc.cnc_rddynamic")
 @covers("cnc_rddynamic.err.EW_LENGTH", "cnc_rddynamic.err.EW_ATTRIB")
 def test_lengths_and_axes_of_the_dynamic_data() -> None:
     _, handle = attached(axes=2)

@@ -28,6 +28,7 @@ def offset(handle: int, number: int) -> int:
     return int(data.data)
 
 
+@pytest.mark.covers("fanuc.cnc_machine")
 @covers("cnc_rdtofs", "cnc_wrtofs", "example.cnc_rdtofs", "example.cnc_wrtofs", "enum.offset_type.0")
 def test_a_tool_offset_is_written_read_and_used() -> None:
     control, handle = attached()
@@ -42,6 +43,7 @@ def test_a_tool_offset_is_written_read_and_used() -> None:
         assert fwlib.cnc_wrtofs(handle, 1, 0, 8, 17) == OK
 
 
+@pytest.mark.covers("fanuc.cnc_rdtofs", "fanuc.cnc_wrtofs")
 @covers(
     "cnc_rdtofs.err.EW_LENGTH", "cnc_rdtofs.err.EW_NUMBER", "cnc_rdtofs.err.EW_ATTRIB", "cnc_wrtofs.err.EW_LENGTH",
     "cnc_wrtofs.err.EW_NUMBER", "cnc_wrtofs.err.EW_ATTRIB", "concept.tool_offset_memory",
@@ -90,7 +92,7 @@ def test_unit_and_range_of_tool_offsets(increment: str, limit: int, mm: float, i
     control, _ = attached(increment="IS-B")
     control.parameters.set(1004, 1 if increment == "IS-A" else 2 if increment == "IS-C" else 0)
     control.power_cycle()
-    assert control.increment == increment
+    assert control.units.increment == increment
 
 
 @covers(
@@ -128,6 +130,7 @@ def test_examples_of_tool_offset_ranges() -> None:
     assert fwlib.cnc_rdtofsinfo(attached(offsets=32)[1])[1].use_no == 32
 
 
+@pytest.mark.covers("fanuc.cnc_rdtofsr", "fanuc.cnc_wrtofsr")
 @covers(
     "cnc_rdtofsr.err.EW_LENGTH", "cnc_rdtofsr.err.EW_NUMBER", "cnc_rdtofsr.err.EW_ATTRIB", "cnc_wrtofsr.err.EW_LENGTH",
     "cnc_wrtofsr.err.EW_NUMBER", "cnc_wrtofsr.err.EW_ATTRIB",
@@ -194,6 +197,8 @@ def test_parameters_that_have_one_value(kind: str) -> None:
     code, data = fwlib.cnc_rdparam(handle, number, 0, 4 + size)
     assert (code, getattr(data.u, name)) == (OK, value)
     assert data.pack()[4 + size :] == b"\0" * (24 - size)
+    as_record = record(number, int(attribute), 0, value)
+    assert fwlib.cnc_rdparar(handle, number, 0, number, 20) == (OK, number, number, len(as_record), as_record)
     assert fwlib.cnc_rdparam(handle, number, 0, 3 + size)[0] == EW.EW_LENGTH
     for axis in (1, 3, ALL_AXES):
         assert fwlib.cnc_rdparam(handle, number, axis, 28)[0] == EW.EW_ATTRIB
@@ -201,6 +206,7 @@ def test_parameters_that_have_one_value(kind: str) -> None:
     assert parameter(handle, number) == value
 
 
+@pytest.mark.covers("fanuc.cnc_rdparam")
 @pytest.mark.parametrize(
     "kind", [pytest.param(k, marks=covers(f"paramtype.{k}_axis"), id=k) for k in AXIS_TYPES]
 )
@@ -212,6 +218,16 @@ def test_parameters_of_axes(kind: str) -> None:
     assert fwlib.cnc_wrparam(handle, 4 + 3 * size, psd(number, ALL_AXES, **{f"{name}s": values})) == OK
     assert parameter(handle, number, ALL_AXES) == [*values, 0, 0, 0]
     assert [parameter(handle, number, axis) for axis in (1, 2, 3, 4, 6)] == [*values, 0, 0]
+    as_records = record(number, list(AXIS_TYPES).index(kind), 0xFF, *values, 0, 0, 0)
+    assert fwlib.cnc_rdparar(handle, number, ALL_AXES, number, 100) == (
+        OK,
+        number,
+        number,
+        len(as_records),
+        as_records,
+    )
+    assert fwlib.cnc_wrparas(handle, len(as_records), as_records) == OK
+    assert parameter(handle, number, ALL_AXES) == [*values, 0, 0, 0]
     assert fwlib.cnc_wrparam(handle, 4 + size, psd(number, 2, **{name: 3})) == OK
     assert parameter(handle, number, ALL_AXES)[:3] == [values[0], 3, values[2]]
     assert fwlib.cnc_rdparam(handle, number, 2, 4 + size)[0] == OK
@@ -232,6 +248,7 @@ def test_example_axis_names() -> None:
     assert "".join(chr(each) if each else "-" for each in data.u.cdatas) == "XYAZ--"
 
 
+@pytest.mark.covers("fanuc.cnc_machine", "fanuc.cnc_rddynamic")
 @covers("cnc_wrparam", "example.cnc_wrparam", "ncparam.1320", "ncparam.1321")
 def test_example_stroke_limits_act_on_the_machine() -> None:
     control, handle = attached()
@@ -267,6 +284,7 @@ def test_example_stroke_limits_act_on_the_machine() -> None:
     assert fwlib.cnc_machine(handle, 2, 8)[1].data[0] == 12_600
 
 
+@pytest.mark.covers("fanuc.cnc_rdparam")
 @covers(
     "cnc_rdparam.err.EW_LENGTH", "cnc_rdparam.err.EW_NUMBER", "cnc_rdparam.err.EW_ATTRIB", "cnc_wrparam.err.EW_LENGTH",
     "cnc_wrparam.err.EW_NUMBER", "cnc_wrparam.err.EW_ATTRIB", "cnc_wrparam.err.EW_NOOPT", "cnc_wrparam.err.EW_PROT",
@@ -316,6 +334,7 @@ def test_a_bit_is_changed_by_writing_its_byte() -> None:
     assert attached()[0].parameters.value(3202) == 0
 
 
+@pytest.mark.covers("fanuc.cnc_delete", "fanuc.cnc_rddynamic", "fanuc.cnc_search", "fanuc.cnc_upstart")
 @covers("concept.ps000_after_write", "ODBPARAIF.prm_type.bit6")
 def test_some_parameters_need_the_power_switched_off() -> None:
     control, handle = attached(axes=2)
@@ -326,14 +345,14 @@ def test_some_parameters_need_the_power_switched_off() -> None:
         EW.EW_BUSY
     ] * 3
     assert fwlib.cnc_delete(handle, 12) == EW.EW_BUSY
-    assert not control.is_rotary(2)
+    assert not control.units.is_rotary(2)
     control.reset()
     assert fwlib.cnc_search(handle, 12) == EW.EW_BUSY
     control.power_cycle()
     assert fwlib.cnc_search(handle, 12) == OK
-    assert control.is_rotary(2)
+    assert control.units.is_rotary(2)
     assert fwlib.cnc_wrparam(handle, 8, psd(1320, 1, ldata=5000)) == OK
-    assert control.alarm_bits == 0
+    assert control.power.alarm_bits == 0
 
 
 # ---------------------------------------------------------------------- records
@@ -390,6 +409,7 @@ def test_a_range_of_parameters_is_a_sequence_of_records() -> None:
     assert fwlib.cnc_rdparar(handle, 1420, ALL_AXES, 1420, 100)[3] == 12
 
 
+@pytest.mark.covers("fanuc.cnc_rdparar")
 @covers("cnc_rdparar.err.EW_LENGTH", "cnc_rdparar.err.EW_NUMBER", "cnc_rdparar.err.EW_ATTRIB")
 def test_ranges_of_parameters_that_are_refused() -> None:
     _, handle = attached()
@@ -433,6 +453,7 @@ def record(number: int, kind: int, axis: int, *values: int) -> bytes:
     return data + b"\0" * (len(data) % 2)
 
 
+@pytest.mark.covers("fanuc.cnc_wrparas")
 def test_what_is_read_as_records_can_be_written_back() -> None:
     control, handle = attached()
     for number in (1420, 1423):
@@ -460,6 +481,7 @@ REFUSED: list[tuple[EW, bytes, int]] = [
 ]
 
 
+@pytest.mark.covers("fanuc.cnc_wrparas")
 @covers(
     "cnc_wrparas.err.EW_LENGTH", "cnc_wrparas.err.EW_NUMBER", "cnc_wrparas.err.EW_ATTRIB", "cnc_wrparas.err.EW_NOOPT",
     "cnc_wrparas.err.EW_PROT",
@@ -577,6 +599,7 @@ def test_settings_are_the_parameters_of_the_setting_screen() -> None:
     assert parameter(handle, 12, ALL_AXES) == [1, 0, 1, 0, 0, 0]
 
 
+@pytest.mark.covers("fanuc.cnc_rdsetr", "fanuc.cnc_wrsets")
 @covers(
     "cnc_rdsetr.err.EW_LENGTH", "cnc_rdsetr.err.EW_NUMBER", "cnc_rdsetr.err.EW_ATTRIB", "cnc_wrsets.err.EW_LENGTH",
     "cnc_wrsets.err.EW_NUMBER", "cnc_wrsets.err.EW_ATTRIB", "cnc_wrsets.err.EW_NOOPT",
@@ -609,6 +632,7 @@ def _with_option(number: int, option: str) -> Any:
     return replace(parameter_rows()[number], option=option)
 
 
+@pytest.mark.covers("fanuc.cnc_wrsets")
 def test_counters_and_timers_are_settings() -> None:
     control, handle = attached()
     registered(control, O7="\nG1 X5. F600\nM30\n")
@@ -628,6 +652,7 @@ def test_counters_and_timers_are_settings() -> None:
     assert parameter(handle, 6752) in (12, 13)
 
 
+@pytest.mark.covers("fanuc.cnc_wrsets")
 def test_timers_are_minutes_and_what_is_over_in_milliseconds() -> None:
     """6751 and 6752 are automatic operation, 6753 and 6754 cutting, 6757 and 6758 the last operation."""
     control, handle = attached()

@@ -51,7 +51,7 @@ def test_what_a_control_is_made_of() -> None:
     assert (control.axes, control.max_axis, control.model, control.mode) == (3, 6, "H", PowerMateMode.MEM)
     assert (PowerMate(model="D").axes, PowerMate(6).axes) == (2, 6)
     assert all(control.status().axes[name].referenced for name in "XYZ")
-    assert [PowerMate(4, rotary=("Y", 4)).axis_name(k) for k in (1, 2, 3, 4)] == ["X", "A", "Y", "B"]
+    assert [PowerMate(4, rotary=("Y", 4)).units.axis_name(k) for k in (1, 2, 3, 4)] == ["X", "A", "Y", "B"]
     some = PowerMate(options=("pmc_axis",))
     assert [some.has_option(name) for name in ("pmc_axis", "custom_macro", "")] == [True, False, True]
 
@@ -171,7 +171,7 @@ def test_an_alarm_stops_a_program_until_a_reset() -> None:
     with pytest.raises(ControlError):
         control.cycle_start()
     control.reset()
-    assert control.alarm_bits == 0
+    assert control.power.alarm_bits == 0
 
 
 def test_a_program_that_is_wrong_puts_an_alarm_on() -> None:
@@ -179,13 +179,13 @@ def test_a_program_that_is_wrong_puts_an_alarm_on() -> None:
     registered(control, O7="\nG1 X5. F600 Y3.\nM30\n", O8="\nM30\n")
     running(control, 7)
     control.advance(5)
-    assert control.alarm_bits == 1 << 3
+    assert control.power.alarm_bits == 1 << 3
     assert "O0007:2" in control.control.alarms.active[0].text
     control.reset()
     made = control.parameters.value(6711)
     running(control, 8)
     control.advance(5)
-    assert (control.alarm_bits, control.parameters.value(6711)) == (0, made + 1)
+    assert (control.power.alarm_bits, control.parameters.value(6711)) == (0, made + 1)
 
 
 # ---------------------------------------------------------------------- parameters that act
@@ -257,6 +257,7 @@ def test_speeds_and_limits_of_an_inch_machine() -> None:
     assert axis.vmax == pytest.approx(15_000 / 60 * 2.54)  # 0.1 inch/min
 
 
+@pytest.mark.covers("fanuc.cnc_machine")
 @pytest.mark.parametrize(
     ("code", "name"), [(0, "Y"), (ord("X"), "Y"), (7, "Y"), (ord("N"), "Y"), (ord("W"), "W")]
 )
@@ -266,11 +267,11 @@ def test_axis_names_come_from_a_parameter_and_are_never_unusable(code: int, name
     data = fwlib.IODBPSD(datano=1020, type=2)
     data.u.cdata = code
     assert fwlib.cnc_wrparam(handle, 5, data) == OK
-    assert control.axis_name(2) == "Y"
+    assert control.units.axis_name(2) == "Y"
     control.power_cycle()
-    assert [control.axis_name(axis) for axis in (1, 2)] == ["X", name]
+    assert [control.units.axis_name(axis) for axis in (1, 2)] == ["X", name]
     assert control.machine.actual == {"X": 3.0, name: -4.0}
-    assert bool(control.alarm_bits) is (code != ord("W"))
+    assert bool(control.power.alarm_bits) is (code != ord("W"))
     control.reset()
     moved(control, f"G0 {name}1.5")
     assert fwlib.cnc_machine(handle, 2, 8)[1].data[0] == 1500
@@ -323,7 +324,7 @@ def test_a_snapshot_is_gone_back_to() -> None:
                 fwlib.cnc_rddynamic(handle, -1, 118)[1],
                 control.mode,
                 control.state.protection_keys,
-                control.cursor,
+                control.state.cursor,
             )
         )
         control.reset()
@@ -363,6 +364,7 @@ def test_two_programs_in_two_threads_have_one_control() -> None:
     assert not control.programs.directory()
 
 
+@pytest.mark.covers("fanuc.cnc_wrmdiprog")
 def test_power_off_and_on() -> None:
     control, handle = attached(axes=2)
     registered(control, O7="\nG1 X5. F600\nM30\n")
@@ -377,14 +379,14 @@ def test_power_off_and_on() -> None:
     control.raise_alarm(101)
     cycles = control.clock.cycles
     control.power_cycle()
-    assert (control.mode, control.selected, control.transfer, bool(control.mdi)) == (
+    assert (control.mode, control.programs.selected, control.transfer, bool(control.mdi)) == (
         PowerMateMode.MEM,
         7,
         None,
         False,
     )
     assert (control.machine.actual, control.clock.cycles) == ({"X": 3.0, "Y": -4.0}, cycles)
-    assert control.alarm_bits == 0
+    assert control.power.alarm_bits == 0
     assert control.macros.get(500) == 1.5
     control.cycle_start()
     control.advance(2000)
@@ -395,6 +397,7 @@ def test_power_off_and_on() -> None:
     assert control.machine.config.axes[0].soft_limits[1] == 4.0
 
 
+@pytest.mark.covers("fanuc.cnc_rdmacro", "fanuc.cnc_rdprogdir", "fanuc.cnc_rdtofs")
 def test_everything_durable_is_in_the_file(tmp_path: Path) -> None:
     file = tmp_path / "power-mate.db"
     control, handle = attached(memory=file, axes=2, increment="IS-A")
@@ -406,7 +409,7 @@ def test_everything_durable_is_in_the_file(tmp_path: Path) -> None:
     control.parameters.set(6711, 41)
     control.close()
     control, handle = attached(memory=file, axes=2)
-    assert (control.selected, control.increment.value) == (7, "IS-A")
+    assert (control.programs.selected, control.units.increment.value) == (7, "IS-A")
     assert fwlib.cnc_rdprogdir(handle, 1, 1, 9999, 30)[1].prg_data == b"%\nO7(PLATE)\n%"
     assert control.parameters.value(1320, 1) == 4000
     assert control.machine.config.axes[0].soft_limits[1] == 40.0

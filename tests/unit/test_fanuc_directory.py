@@ -73,6 +73,7 @@ def test_example_directory_printed_program_by_program() -> None:
     assert text == "\nO200\nO201%"
 
 
+@pytest.mark.covers("fanuc.cnc_rdprogdir")
 @covers("concept.comment_rules", "concept.program_number_range")
 def test_ranges_and_comments_of_the_directory() -> None:
     control, handle = attached()
@@ -90,6 +91,7 @@ def test_ranges_and_comments_of_the_directory() -> None:
     assert fwlib.cnc_rdprogdir(handle, 2, 2, 4, 50)[1].prg_data == b"%"
 
 
+@pytest.mark.covers("fanuc.cnc_rdprogdir")
 @covers("cnc_rdprogdir.err.EW_LENGTH", "cnc_rdprogdir.err.EW_NUMBER", "cnc_rdprogdir.err.EW_ATTRIB")
 def test_directory_requests_that_are_refused() -> None:
     _, handle = _directory()
@@ -246,6 +248,7 @@ def test_mdi_programs_that_are_refused() -> None:
     assert put(FORMAT) == OK
 
 
+@pytest.mark.covers("fanuc.cnc_wrmdiprog")
 @covers("cnc_rdmdipntr", "cnc_wrmdipntr")
 @pytest.mark.covers(
     "fanuc.ODBMDIP.mdiprog", "fanuc.ODBMDIP.mdipntr", "fanuc.ODBMDIP.crntprog", "fanuc.ODBMDIP.crntpntr"
@@ -284,6 +287,7 @@ def test_mdi_pointers() -> None:
     control.reset()
 
 
+@pytest.mark.covers("fanuc.cnc_rdmdipntr", "fanuc.cnc_wrmdipntr", "fanuc.cnc_wrmdiprog")
 @covers(
     "cnc_rdmdipntr.err.EW_MODE", "cnc_wrmdipntr.err.EW_DATA", "cnc_wrmdipntr.err.EW_MODE",
     "cnc_wrmdipntr.err.EW_REJECT",
@@ -308,6 +312,7 @@ def test_mdi_pointers_that_are_refused() -> None:
 # ---------------------------------------------------------------------- cursor
 
 
+@pytest.mark.covers("fanuc.cnc_rdexecprog", "fanuc.cnc_rdseqnum")
 @covers("cnc_seqsrch", "cnc_rewind")
 def test_a_start_begins_at_the_sequence_number_that_was_sought() -> None:
     control, handle = attached(axes=2)
@@ -329,6 +334,19 @@ def test_a_start_begins_at_the_sequence_number_that_was_sought() -> None:
     assert list(fwlib.cnc_absolute(handle, -1, 12)[1].data[:2]) == [2500, 5000]
 
 
+@pytest.mark.covers(
+    "fanuc.cnc_delete",
+    "fanuc.cnc_download",
+    "fanuc.cnc_dwnend",
+    "fanuc.cnc_rdexecprog",
+    "fanuc.cnc_rdmdipntr",
+    "fanuc.cnc_rdprgnum",
+    "fanuc.cnc_rdproginfo",
+    "fanuc.cnc_rdseqnum",
+    "fanuc.cnc_rewind",
+    "fanuc.cnc_search",
+    "fanuc.cnc_seqsrch",
+)
 @covers(
     "cnc_seqsrch.err.EW_DATA", "cnc_seqsrch.err.EW_MODE", "cnc_seqsrch.err.EW_REJECT", "cnc_rewind.err.EW_MODE",
     "cnc_rewind.err.EW_REJECT", "concept.mode_matrix",
@@ -342,7 +360,7 @@ def test_searches_of_the_cursor_that_are_refused() -> None:
     assert fwlib.cnc_seqsrch(handle, 20) == OK
     for number in (11, 0, -1, 99_999_999):
         assert fwlib.cnc_seqsrch(handle, number) == EW.EW_DATA
-        assert control.cursor == 2
+        assert control.state.cursor == 2
     for mode in ("MDI", "EDIT", "HND", "JOG", "T-JOG", "T-HND", "INC", "REF", "RMT"):
         control.select_mode(mode)
         assert fwlib.cnc_seqsrch(handle, 10) == EW.EW_MODE

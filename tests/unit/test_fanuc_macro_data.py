@@ -69,6 +69,7 @@ def test_macro_variables_in_decimal_form() -> None:
     assert fwlib.cnc_wrmacro(handle, 137, 12, 5, 0) == OK
 
 
+@pytest.mark.covers("fanuc.cnc_setmactype")
 @covers("concept.macro_empty")
 def test_vacant_is_not_zero() -> None:
     control, handle = attached()
@@ -113,6 +114,7 @@ def test_binary_form_reaches_farther_than_the_decimal_one() -> None:
     assert macro(other, 500) == (25, 1)
 
 
+@pytest.mark.covers("fanuc.cnc_rdmacror")
 @pytest.mark.parametrize(
     ("options", "code", "there", "missing"),
     [
@@ -140,6 +142,7 @@ def test_ranges_of_common_variables(
     assert fwlib.cnc_rdmacror(handle, there[0], there[2], 5000)[0] == EW.EW_NUMBER
 
 
+@pytest.mark.covers("fanuc.cnc_wrmacror")
 @covers("concept.macro_local_scope")
 def test_local_variables_are_those_of_the_macro_and_cannot_be_written() -> None:
     control, handle = attached()
@@ -179,6 +182,7 @@ def test_ranges_of_macro_variables() -> None:
     assert struct.unpack_from("<lh", found.pack(), 6 + 6 * 2) == (-39, 0)
 
 
+@pytest.mark.covers("fanuc.cnc_rdmacro", "fanuc.cnc_rdmacror")
 @covers(
     "cnc_rdmacro.err.EW_LENGTH", "cnc_wrmacro.err.EW_LENGTH", "cnc_rdmacror.err.EW_LENGTH",
     "cnc_rdmacror.err.EW_NUMBER",

@@ -68,7 +68,7 @@ def test_variables_from_500_on_outlast_the_power_and_the_others_do_not(tmp_path:
     control.macros.set(503, 1.25, (1250, 3))
     control.power_cycle()
     assert [control.macros.get(number) for number in (500, 100, 501, 502)] == [2.5, None, 1.0 / 3.0, None]
-    assert control.local_variable(1) is None
+    assert control.custom_macros.local(1) is None
     control.close()
     again = PowerMate(memory=tmp_path / "power.mate")
     assert [again.macros.get(number) for number in (500, 100, 501, 502)] == [2.5, None, 1.0 / 3.0, None]
@@ -95,7 +95,7 @@ def test_a_reset_clears_what_parameter_6001_says(bits: int, left: tuple[float | 
     registered(control, O1="\n#100=5.5\n#1=6.5\nM30\n")
     assert until_over(control) is RunState.COMPLETED
     control.reset()
-    assert (control.macros.get(100), control.local_variable(1)) == left
+    assert (control.macros.get(100), control.custom_macros.local(1)) == left
 
 
 def test_switching_off_clears_what_a_reset_may_keep() -> None:
@@ -105,7 +105,11 @@ def test_switching_off_clears_what_a_reset_may_keep() -> None:
     assert until_over(control) is RunState.COMPLETED
     assert (control.macros.get(100), macro(handle, 500)) == (5.5, (0, 0))
     control.power_cycle()
-    assert (control.macros.get(100), control.local_variable(1), control.macros.get(500)) == (None, None, 0.0)
+    assert (control.macros.get(100), control.custom_macros.local(1), control.macros.get(500)) == (
+        None,
+        None,
+        0.0,
+    )
 
 
 def test_codes_call_programs_by_parameters() -> None:
@@ -189,6 +193,7 @@ def test_a_message_stop_shows_its_text_until_the_program_goes_on() -> None:
     assert fwlib.cnc_rdopmsg3(handle, 4, 5)[1] == 0
 
 
+@pytest.mark.covers("fanuc.pmc_rdpmcrng")
 def test_system_variables_are_those_of_the_control() -> None:
     control, handle = attached()
     control.parameters.set(6711, 41)
@@ -215,6 +220,7 @@ def test_system_variables_are_those_of_the_control() -> None:
     assert fwlib.pmc_rdpmcrng(handle, 1, 0, 54, 55, 10)[1].u.cdata[:2] == [0, 0]
 
 
+@pytest.mark.covers("fanuc.pmc_rdpmcrng")
 def test_the_hours_of_operation_are_counted_on_from_what_a_program_wrote() -> None:
     control, handle = attached()
     registered(
@@ -323,6 +329,7 @@ def test_a_program_goes_on_from_a_file_in_another_control() -> None:
     assert other.clock.cycles == control.clock.cycles
 
 
+@pytest.mark.covers("fanuc.cnc_seqsrch")
 def test_a_program_with_macros_may_begin_at_a_block() -> None:
     control, handle = attached()
     registered(

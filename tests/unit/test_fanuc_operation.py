@@ -106,6 +106,7 @@ def test_a_feed_override_acts_up_to_254_percent(percent: int) -> None:
     assert (control.positions.feed(), control.signals.feed_override) == (0, 0)
 
 
+@pytest.mark.covers("fanuc.cnc_wropnlsgnl")
 def test_nothing_starts_while_feed_hold_is_given() -> None:
     control, handle = attached(axes=1)
     registered(control, O7="\nG1 X4. F6000\nM30\n")

@@ -66,6 +66,7 @@ def test_a_stream_that_is_cut_leaves_no_half_program() -> None:
     assert fwlib.cnc_dwnstart(handle) == OK
 
 
+@pytest.mark.covers("fanuc.cnc_search")
 @covers("concept.download_session", "cnc_download.err.EW_FUNC", "cnc_dwnend.err.EW_FUNC")
 def test_download_session() -> None:
     control, handle = attached()
@@ -85,6 +86,7 @@ def test_download_session() -> None:
     assert sent(handle, FORMAT) == (OK, OK)
 
 
+@pytest.mark.covers("fanuc.cnc_dwnend")
 @covers("cnc_download.err.EW_LENGTH", "range.download_number")
 def test_a_piece_has_1_to_256_characters() -> None:
     control, handle = attached()
@@ -168,6 +170,7 @@ def test_parameters_of_registration() -> None:
     assert (control.programs.read(7), len(control.programs)) == (b"O0007\nM2\n", 3)
 
 
+@pytest.mark.covers("fanuc.cnc_delete")
 @covers("cnc_download.err.EW_OVRFLOW", "cnc_dwnend.err.EW_OVRFLOW", "concept.memory_accounting")
 def test_a_full_memory() -> None:
     control, handle = attached(characters=60, most_programs=2)
@@ -226,6 +229,7 @@ def test_example_upload_in_pieces() -> None:
     assert len(found[0][1].pack()) == 14  # the piece fills its buffer
 
 
+@pytest.mark.covers("fanuc.cnc_upend", "fanuc.cnc_upstart")
 @covers("example.cnc_upload")
 def test_example_upload_loop_until_the_percent() -> None:
     _, handle = attached()
@@ -243,6 +247,7 @@ def test_example_upload_loop_until_the_percent() -> None:
     assert uploaded(handle, 1234, 1) == text
 
 
+@pytest.mark.covers("fanuc.cnc_upend", "fanuc.cnc_upload")
 @covers(
     "concept.upload_session", "cnc_upstart.err.EW_BUSY", "cnc_upstart.err.EW_DATA", "cnc_upload.err.EW_FUNC",
     "cnc_upload.err.EW_LENGTH", "cnc_upend.err.EW_FUNC",
@@ -280,6 +285,7 @@ def _memory(*, selected: int = 201, **keys: object) -> tuple[PowerMate, int]:
     return control, handle
 
 
+@pytest.mark.covers("fanuc.cnc_upload", "fanuc.cnc_upstart")
 def test_transfers_end_with_the_power() -> None:
     control, handle = attached()
     registered(control, O7="\nG4X7.\nM30\n")
@@ -303,11 +309,11 @@ def test_search_selects_in_mem_and_edit_only() -> None:
         control.select_mode(mode)
         for number in (12, 200):
             assert fwlib.cnc_search(handle, number) == OK
-            assert fwlib.cnc_rdprgnum(handle)[1].data == control.selected == number
+            assert fwlib.cnc_rdprgnum(handle)[1].data == control.programs.selected == number
     for mode in ("MDI", "HND", "JOG", "T-JOG", "T-HND", "INC", "REF", "RMT"):
         control.select_mode(mode)
         assert fwlib.cnc_search(handle, 12) == OK
-        assert control.selected == 200
+        assert control.programs.selected == 200
     for mode in ("MEM", "JOG"):
         control.select_mode(mode)
         for number in (13, 0, -1, 10000):
@@ -325,6 +331,7 @@ def test_delete_takes_one_program_in_any_mode_but_mdi() -> None:
     assert [each.number for each in control.programs.directory()] == [200, 201]
 
 
+@pytest.mark.covers("fanuc.cnc_rdprgnum")
 @covers("cnc_delall", "example.cnc_delall")
 def test_delall_takes_every_program_and_the_selection() -> None:
     control, handle = _memory()
@@ -404,7 +411,7 @@ MATRIX: list[tuple[Callable[[PowerMate, int], None], dict[str, EW]]] = [
 @covers(
     "cnc_dwnstart.err.EW_BUSY", "cnc_dwnstart.err.EW_PROT", "cnc_search.err.EW_BUSY", "cnc_delall.err.EW_BUSY",
     "cnc_delete.err.EW_BUSY", "concept.program_busy_conditions", "concept.alarm_ps000_ps101", "concept.op_signal",
-    "concept.protect_key", "concept.background_edit", "concept.compare_running", "EW_BUSY",
+    "concept.protect_key", "concept.background_edit", "concept.compare_running", "EW_BUSY", "mode.MEM",
 )  # fmt: skip
 @pytest.mark.parametrize("call", CALLS)
 @pytest.mark.parametrize(("state", "answers"), [pytest.param(*each, id=each[0].__name__) for each in MATRIX])
@@ -436,6 +443,7 @@ def test_in_other_modes_than_edit_and_mem_the_op_signal_does_not_matter() -> Non
     unchanged(control, lambda: fwlib.cnc_delall(handle), BUSY)  # O201 is being executed
 
 
+@pytest.mark.covers("fanuc.cnc_delall")
 @covers(
     "concept.write_protection_programs", "cnc_delall.err.EW_PROT", "cnc_delete.err.EW_PROT", "ncparam.3202_0",
     "ncparam.3202_4", "cnc_download.err.EW_PROT", "cnc_dwnend.err.EW_PROT",
@@ -484,6 +492,7 @@ def test_which_key_protects_programs() -> None:
     unchanged(control, lambda: fwlib.cnc_dwnstart(handle), PROT)
 
 
+@pytest.mark.covers("fanuc.cnc_download")
 def test_a_comparison_tells_whether_programs_are_the_same_and_changes_nothing() -> None:
     control, handle = attached()
     assert sent(handle, FORMAT) == (OK, OK)

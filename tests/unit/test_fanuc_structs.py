@@ -255,6 +255,7 @@ def _entry_size() -> int:
     return ctypes.sizeof(arrays["data"]._type_)
 
 
+@pytest.mark.covers("fanuc.cnc_rdmacror", "fanuc.cnc_rdproginfo", "fanuc.cnc_rdtofsr")
 @covers("concept.struct_packing")
 def test_nothing_is_aligned_to_four_bytes_but_lengths_of_that_packing_are_taken() -> None:
     assert _place(fwlib.ODBDY, "seqnum")[0] == 10

@@ -72,8 +72,14 @@ def test_a_diagnosis_value_of_each_kind(
     assert getattr(diag.u, member) == value
     assert bytes(diag)[4 + size :] == bytes(28 - 4 - size)
     assert library.cnc_diagnoss(handle, number, axis, length - 1)[0] is EW.EW_LENGTH
+    if axis:  # in a range each of six axes has its place
+        code, _, _, used, data = library.cnc_diagnosr(handle, number, -1, number, 100)
+        assert (code, used) == (0, 4 + 6 * size)
+        place = 4 + (axis - 1) * size
+        assert int.from_bytes(data[place : place + size], "little", signed=True) == value
 
 
+@pytest.mark.covers("fanuc.cnc_diagnoss")
 @pytest.mark.covers("fanuc.diag.axis.-1")
 @pytest.mark.covers("fanuc.ODBDGN.type")
 def test_all_axes_at_once() -> None:
@@ -85,6 +91,7 @@ def test_all_axes_at_once() -> None:
     assert library.cnc_diagnoss(handle, 301, -1, 4 + 4 * 6)[0] is EW.EW_OK
 
 
+@pytest.mark.covers("fanuc.cnc_diagnoss")
 @pytest.mark.parametrize(
     ("number", "axis", "code"),
     [
@@ -100,6 +107,7 @@ def test_a_diagnosis_is_refused(number: int, axis: int, code: str) -> None:
     assert library.cnc_diagnoss(handle, number, axis, 28)[0] is EW[code]
 
 
+@pytest.mark.covers("fanuc.cnc_diagnoss")
 @pytest.mark.covers("fanuc.cnc_diagnoss.err.EW_LENGTH")
 def test_a_diagnosis_needs_its_length() -> None:
     library, handle = at(PowerMate())
@@ -140,6 +148,7 @@ def test_a_range_of_diagnosis_numbers() -> None:
     assert data[34:50] == b"\xca\0\xff\2" + b"\x58\2\xe8\3\xe8\3" + bytes(6)
 
 
+@pytest.mark.covers("fanuc.cnc_diagnosr")
 @pytest.mark.parametrize(
     ("first", "axis", "last", "length", "code"),
     [
@@ -221,6 +230,7 @@ def test_figures_of_tool_offsets_and_macro_variables(
         assert (code, valid, read[0]) == (0, digits, decimals)
 
 
+@pytest.mark.covers("fanuc.cnc_getfigure")
 @pytest.mark.covers("fanuc.param.1004_0", "fanuc.param.1004_1", "fanuc.cnc_getfigure.err.EW_ATTRIB")
 def test_the_increment_system_is_a_parameter() -> None:
     control = PowerMate()
@@ -284,6 +294,7 @@ def test_the_manuals_program_prints_the_message() -> None:
     assert (code, count, [each.datano for each in messages]) == (0, 2, [100, 999])
 
 
+@pytest.mark.covers("fanuc.cnc_rdopmsg")
 @pytest.mark.parametrize(
     ("kind", "length", "options", "code"),
     [

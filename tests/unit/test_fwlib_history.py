@@ -30,6 +30,18 @@ def fresh(**more: Any) -> tuple[PowerMate, Any, int]:
     return control, library, handle
 
 
+ENDS = {
+    3: (3, 99, 102, 255),
+    4: (500, 599),
+    5: (749,),
+    6: (400, 499),
+    8: (399,),
+    10: (5000, 5999),
+    15: (1000, 1999),
+}
+"""First and last numbers of the groups of alarms."""
+
+
 def operations(library: Any, handle: int) -> list[bytes]:
     """Stop, read all operation records as bytes, go on."""
     assert library.cnc_stopophis(handle) == 0
@@ -57,6 +69,7 @@ def alarms(library: Any, handle: int) -> bytes:
 # ---------------------------------------------------------------------- stop and start
 
 
+@pytest.mark.covers("fanuc.cnc_rdalmhistry")
 @pytest.mark.covers(
     "fanuc.cnc_stopophis", "fanuc.cnc_startophis", "fanuc.cnc_rdophisno", "fanuc.cnc_rdalmhisno",
     "fanuc.cnc_rdophisno.err.EW_FUNC", "fanuc.cnc_rdophistry.err.EW_FUNC", "fanuc.cnc_rdalmhisno.err.EW_FUNC",
@@ -178,9 +191,12 @@ def test_the_change_of_a_signal(letter: str, number: int) -> None:
 )
 def test_an_alarm(bit: int, number: int) -> None:
     control, library, handle = fresh()
-    control.raise_alarm(number, "TEXT", axis=2)
-    expected = b"\2\0" + (1 << bit).to_bytes(2, "little") + number.to_bytes(2, "little") + b"\0\0"
-    assert operations(library, handle) == [expected]
+    numbers = (number, *ENDS.get(bit, ()))
+    for each in numbers:
+        control.raise_alarm(each, "TEXT", axis=2)
+    group = (1 << bit).to_bytes(2, "little")
+    expected = [b"\2\0" + group + each.to_bytes(2, "little") + b"\0\0" for each in numbers]
+    assert operations(library, handle) == expected
 
 
 @pytest.mark.covers(*(f"fanuc.ODBHIS.alm_grp.bit{bit}" for bit in (9, 11, 12, 13, 14)))
@@ -208,6 +224,7 @@ def test_power_on_notes_date_and_time() -> None:
     assert operations(library, handle) == [b"\3\0\x1f\4\x11\1\0\0", b"\4\0\x16\x35\x29\1\0\0"]
 
 
+@pytest.mark.covers("fanuc.cnc_rdophistry")
 @pytest.mark.covers("fanuc.ODBHIS.s_no", "fanuc.ODBHIS.e_no")
 def test_fewer_records_than_asked_for() -> None:
     control, library, handle = fresh()
@@ -334,6 +351,7 @@ def test_the_table_has_twenty_entries_and_keeps_those_not_named() -> None:
     assert library.cnc_rdhissgnl(handle)[1].data[2].sig_name == 0
 
 
+@pytest.mark.covers("fanuc.cnc_rdhissgnl")
 @pytest.mark.parametrize(
     ("letter", "good", "bad"),
     [
@@ -358,6 +376,7 @@ def test_addresses_that_can_be_watched(letter: str, good: tuple[int, ...], bad: 
     assert library.cnc_rdhissgnl(handle)[1].data[4].sig_no == good[-1]
 
 
+@pytest.mark.covers("fanuc.cnc_rdhissgnl", "fanuc.cnc_wrhissgnl")
 @pytest.mark.covers("fanuc.cnc_wrhissgnl.err.EW_ATTRIB")
 def test_a_wrong_table_is_refused_whole() -> None:
     _, library, handle = fresh()

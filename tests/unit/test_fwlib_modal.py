@@ -89,7 +89,7 @@ CODES = [
         for row in CODES
     ],
 )
-@pytest.mark.covers("fanuc.ODBMDL.g_data")
+@pytest.mark.covers("fanuc.ODBMDL.g_data", "fanuc.ODBMDL.g_rdata", "fanuc.cnc_modal.type.-1")
 def test_a_code_has_its_number_and_stays_in_force(group: int, value: int, text: str, words: str) -> None:
     extra = "G1 X3. Y7. Z9. F800" if group else "X3. Y7. R50."
     library, handle, _ = executing(f"{text}\n{extra}", words)
@@ -218,7 +218,7 @@ def test_words_of_the_axes(number: int, value: int) -> None:
         for name, each in zip(names, ("51.25", "-3.5", "4.125", "-17.", "61.", "-72.5"), strict=True)
     )
     library, handle, control = executing(f"G1 {moves} F500", "G1", axes=6, rotary=(4, 5, 6))
-    assert [control.axis_name(axis) for axis in range(1, 7)] == list(names)
+    assert [control.units.axis_name(axis) for axis in range(1, 7)] == list(names)
     code, modal = library.cnc_modal(handle, number, 0)
     assert (code, modal.modal.aux.aux_data) == (0, value)
     _, every = library.cnc_modal(handle, -3, 0)
@@ -244,6 +244,7 @@ def test_what_is_known_about_a_word() -> None:
     assert flags(103, 2) == (0x80 | 2, 0)
 
 
+@pytest.mark.covers("fanuc.cnc_modal")
 @pytest.mark.covers("fanuc.param.3030")
 def test_digits_of_m_are_those_of_the_parameter() -> None:
     library, handle, control = executing("G1 X9. F500 M8", "G1")

@@ -105,9 +105,10 @@ def test_units_of_positions(more: dict[str, Any], value: int, axis: str, unit: f
     library, handle = at(control)
     assert library.cnc_incpoint(handle, 2, 0, 1, 3000, idb((1, value)))[0] == 0
     control.advance(3000)
-    assert control.status().axes[control.axis_name(1)].machine == pytest.approx(value * unit, abs=1e-9)
+    assert control.status().axes[control.units.axis_name(1)].machine == pytest.approx(value * unit, abs=1e-9)
 
 
+@pytest.mark.covers("fanuc.cnc_finstate", "fanuc.cnc_incpoint")
 @pytest.mark.covers("fanuc.cnc_dwell", "fanuc.concept.direct_command")
 def test_a_dwell_keeps_its_path_waiting() -> None:
     control = PowerMate()
@@ -205,6 +206,7 @@ def test_a_reset_and_an_alarm_empty_the_buffers() -> None:
         assert list(library.cnc_finstate(handle)[1].cdata) == [0] * 8
 
 
+@pytest.mark.covers("fanuc.cnc_finstate")
 def test_a_change_of_mode_lets_commands_go_on() -> None:
     control = PowerMate()
     library, handle = at(control)
@@ -262,6 +264,15 @@ def test_a_running_program_has_the_axes() -> None:
 # ---------------------------------------------------------------------- refusals
 
 
+@pytest.mark.covers(
+    "fanuc.cnc_abspoint",
+    "fanuc.cnc_coordre",
+    "fanuc.cnc_dwell",
+    "fanuc.cnc_exebufstat",
+    "fanuc.cnc_incpoint",
+    "fanuc.cnc_opdi",
+    "fanuc.cnc_setfin",
+)
 @pytest.mark.covers("fanuc.concept.not_on_pmd")
 def test_a_power_mate_d_has_none_of_this() -> None:
     library, handle = at(PowerMate(model="D"))
@@ -288,6 +299,7 @@ UNMARKED: dict[str, tuple[int, ...]] = {
 }  # fmt: skip
 
 
+@pytest.mark.covers("fanuc.cnc_exebufstat")
 @pytest.mark.covers("fanuc.concept.power_mate_d_limit")
 def test_a_power_mate_d_has_the_functions_of_the_other_sections() -> None:
     control = PowerMate(model="D")
@@ -300,6 +312,7 @@ def test_a_power_mate_d_has_the_functions_of_the_other_sections() -> None:
     assert library.cnc_exebufstat(handle)[0] is EW.EW_FUNC
 
 
+@pytest.mark.covers("fanuc.cnc_exebufstat", "fanuc.cnc_setfin")
 @pytest.mark.covers("fanuc.param.8003_7", "fanuc.param.8010")
 def test_parameters_allow_direct_commands() -> None:
     control = PowerMate()
@@ -315,6 +328,7 @@ def test_parameters_allow_direct_commands() -> None:
     assert library.cnc_setfin(handle, fwlib.ODBFIN()) is EW.EW_PARAM
 
 
+@pytest.mark.covers("fanuc.cnc_abspoint", "fanuc.cnc_incpoint")
 @pytest.mark.parametrize(
     ("path", "nmod", "count", "feed", "values", "code"),
     [
@@ -504,6 +518,7 @@ def test_torque_mode_of_an_axis(bit: int) -> None:
     assert library.cnc_diagnoss(handle, 203, bit + 1, 5)[1].u.cdata == 0
 
 
+@pytest.mark.covers("fanuc.cnc_rdcurrent")
 @pytest.mark.covers("fanuc.cnc_opdi.number.13", "fanuc.cnc_opdi.sig13.axis", "fanuc.cnc_opdi.sig13.formula")
 def test_torque_override_limits_the_current() -> None:
     control, library, handle = started("G0 X900. Y900. Z900.")
@@ -544,6 +559,7 @@ def test_an_operation_signal_is_refused(number: int, value: int, axis: int, code
     assert (control.pmc.read("G", 0, 255), state(control)) == (before, RunState.ACTIVE)
 
 
+@pytest.mark.covers("fanuc.cnc_finstate", "fanuc.cnc_setfin")
 @pytest.mark.covers(
     "fanuc.cnc_opdi.err.EW_BUSY", "fanuc.cnc_exebufstat.err.EW_BUSY", "fanuc.cnc_finstate.err.EW_BUSY",
     "fanuc.cnc_setfin.err.EW_BUSY",

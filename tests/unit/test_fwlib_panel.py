@@ -83,6 +83,7 @@ def test_a_bit_selects_its_signal_alone(bit: int, name: str, value: int) -> None
     assert sum(getattr(alone, other) for other in members) == value
 
 
+@pytest.mark.covers("fanuc.cnc_rdopnlsgnl")
 @pytest.mark.covers(
     *(f"fanuc.cnc_rdopnlsgnl.slct_data.bit{bit}" for bit in UNUSED),
     *(f"fanuc.IODBSGNL.type.bit{bit}" for bit in UNUSED),
@@ -98,6 +99,7 @@ def test_unused_bits_select_nothing() -> None:
     assert bytes(library.cnc_rdopnlsgnl(handle, unused)[1]) == bytes(30)
 
 
+@pytest.mark.covers("fanuc.cnc_rdopnlsgnl", "fanuc.cnc_wropnlsgnl")
 @pytest.mark.parametrize(
     ("name", "value"),
     [
@@ -114,6 +116,7 @@ def test_a_bad_value_writes_nothing(name: str, value: int) -> None:
     assert control.control.overrides.feed == 0.7
 
 
+@pytest.mark.covers("fanuc.cnc_rdopnlsgnl")
 @pytest.mark.parametrize(
     ("value", "aut"),
     [
@@ -221,6 +224,7 @@ def test_dry_run(value: int, mm_min: int) -> None:
     assert control.status().axes["X"].velocity * 60.0 == pytest.approx(mm_min)
 
 
+@pytest.mark.covers("fanuc.cnc_wropnlsgnl")
 @pytest.mark.covers("fanuc.IODBSGNL.mem_prtct.0", "fanuc.IODBSGNL.mem_prtct.1")
 @pytest.mark.covers("fanuc.IODBSGNL.mem_prtct")
 def test_memory_protection() -> None:
@@ -278,6 +282,7 @@ def test_a_general_purpose_signal(bit: int) -> None:
     assert library.cnc_rdopnlgnrl(handle, 0xFF)[1].sgnal == 0xFF ^ 1 << bit
 
 
+@pytest.mark.covers("fanuc.cnc_rdopnlgnrl", "fanuc.cnc_rdopnlgsname")
 @pytest.mark.covers(
     "fanuc.cnc_rdopnlgnrl.slct_data.bits15_8", "fanuc.cnc_wropnlgnrl.type.bits15_8",
     "fanuc.cnc_rdopnlgsname.slct_data.bits15_8", "fanuc.IODBRDNA.type.bits15_8",
@@ -336,6 +341,7 @@ def test_a_signal_has_a_name_of_eight_characters(bit: int) -> None:
     assert bytes(one)[4:].count(b" ") == 0
 
 
+@pytest.mark.covers("fanuc.cnc_rdopnlgnrl", "fanuc.cnc_rdopnlgsname")
 def test_the_panel_outlasts_switching_off(tmp_path: Path) -> None:
     control = PowerMate(memory=tmp_path / "memory")
     library, handle = at(control)

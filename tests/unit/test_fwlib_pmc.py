@@ -183,12 +183,17 @@ def test_reading_is_refused(kind: int, data_type: int, first: int, last: int, le
     assert library.pmc_rdpmcrng(handle, kind, data_type, first, last, length)[0] is EW[code]
 
 
+@pytest.mark.covers("fanuc.pmc_wrpmcrng")
 @pytest.mark.parametrize(
     ("head", "length", "code"),
     [
         pytest.param(
             (D, 1, 100, 101), 9, "EW_LENGTH", marks=pytest.mark.covers("fanuc.pmc_wrpmcrng.err.EW_LENGTH")
         ),
+        *(
+            pytest.param(*each, "EW_LENGTH", marks=pytest.mark.covers("fanuc.pmc_wrpmcrng.err.EW_LENGTH"))
+            for each in (((D, 1, 100, 102), 11), ((D, 2, 100, 101), 10), ((D, 2, 100, 105), 14))
+        ),  # no whole words
         ((D, 1, 100, 101), 2000, "EW_LENGTH"),
         ((D, 1, 100, 101), 4, "EW_LENGTH"),
         pytest.param(
@@ -210,6 +215,7 @@ def test_writing_is_refused_and_writes_nothing(head: tuple[int, ...], length: in
     assert control.pmc.read("D", 0, 1859) == before
 
 
+@pytest.mark.covers("fanuc.pmc_rdpmcrng")
 @pytest.mark.covers("fanuc.EW_NOPMC", "fanuc.pmc_rdpmcrng.err.EW_NOPMC", "fanuc.pmc_wrpmcrng.err.EW_NOPMC")
 def test_a_control_without_a_pmc() -> None:
     library, handle = at(PowerMate(options=("custom_macro",)))

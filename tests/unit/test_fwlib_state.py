@@ -10,6 +10,7 @@ import pytest
 from polycnc.cnc import Answer, Function
 from polycnc.controllers.fanuc import PowerMate, fwlib
 from polycnc.controllers.fanuc.data._configuration import Configuration
+from polycnc.controllers.fanuc.device._modes import PowerMateMode
 
 
 def at(control: PowerMate) -> tuple[Any, int]:
@@ -92,6 +93,7 @@ MODULES: dict[str, tuple[str, dict[int, Any]]] = {
 }
 
 
+@pytest.mark.covers("fanuc.cnc_sysconfig")
 @pytest.mark.parametrize(
     ("element", "argument", "module", "value"),
     [
@@ -256,7 +258,7 @@ def test_a_reset_signal_shows_as_reset() -> None:
     assert emergency_of(control) == 0
 
 
-@pytest.mark.covers("fanuc.ODBST.alarm.0", "fanuc.ODBST.alarm.1", "fanuc.ODBST.alarm.2")
+@pytest.mark.covers("fanuc.ODBST.alarm.0", "fanuc.ODBST.alarm.1", "fanuc.ODBST.alarm.2", "fanuc.ODBST.alarm")
 def test_alarm_and_low_battery() -> None:
     control = PowerMate()
     library, handle = at(control)
@@ -266,8 +268,11 @@ def test_alarm_and_low_battery() -> None:
     assert library.cnc_statinfo(handle)[1].alarm == 2
     control.raise_alarm(85, "OVERRUN")
     assert library.cnc_statinfo(handle)[1].alarm == 1
+    control.reset()
+    assert library.cnc_statinfo(handle)[1].alarm == 2
 
 
+@pytest.mark.covers("fanuc.cnc_upend")
 @pytest.mark.covers("fanuc.ODBST.edit.3")
 def test_a_program_that_goes_out_shows_as_output() -> None:
     control = PowerMate()
@@ -280,6 +285,7 @@ def test_a_program_that_goes_out_shows_as_output() -> None:
 
 
 @pytest.mark.covers(
+    "fanuc.ODBST.edit",
     "fanuc.ODBST.edit.0",
     "fanuc.ODBST.edit.1",
     "fanuc.ODBST.edit.4",
@@ -290,6 +296,9 @@ def test_edit_state() -> None:
     control = PowerMate()
     library, handle = at(control)
     put(control, 3, "G0 X1.")
+    for mode in PowerMateMode:  # the mode alone is no editing
+        control.select_mode(mode)
+        assert (library.cnc_statinfo(handle)[1].aut, library.cnc_statinfo(handle)[1].edit) == (int(mode), 0)
     states = [library.cnc_statinfo(handle)[1].edit]
     edit = control.control.edit("O0003", background=True)
     states.append(library.cnc_statinfo(handle)[1].edit)
@@ -311,10 +320,23 @@ GROUPS = {0: 100, 1: 0, 2: 101, 3: 85, 4: 506, 5: 700, 6: 417, 8: 300, 10: 5010,
 UNUSED = (7, 9, 11, 12, 13, 14)
 
 
+ENDS = {
+    3: (3, 99, 102, 255),
+    4: (500, 599),
+    5: (700, 749),
+    6: (400, 499),
+    8: (301, 399),
+    10: (5000, 5999),
+    15: (1000, 1999),
+}
+"""First and last numbers of the groups that have more than one."""
+
+
 def signed(bits: int) -> int:
     return bits - 0x10000 if bits & 0x8000 else bits
 
 
+@pytest.mark.covers("fanuc.cnc_alarm")
 @pytest.mark.parametrize(
     ("bit", "number"),
     [
@@ -333,11 +355,15 @@ def test_an_alarm_sets_the_bit_of_its_group_and_is_found_by_it(bit: int, number:
     assert (code, alarm.data) == (0, signed(1 << bit))
     _, found = library.cnc_rdalminfo(handle, 0, signed(1 << bit), 2 * 4 + 2)
     assert [found.u.alm1.alm[0].alm_no, found.u.alm1.alm[1].axis, found.u.alm1.data_end] == [number, -1, -1]
+    for other in ENDS.get(bit, ()):
+        control.raise_alarm(other, "TEXT")
+        assert library.cnc_alarm(handle)[1].data == signed(1 << bit)
     others = sum(1 << each for each in GROUPS if each != bit)
     _, none = library.cnc_rdalminfo(handle, 0, signed(others), 4 + 2)
     assert none.u.alm1.alm[0].axis == -1
 
 
+@pytest.mark.covers("fanuc.cnc_rdalminfo")
 @pytest.mark.covers(
     "fanuc.cnc_alarm",
     *(f"fanuc.ODBALM.data.bit{bit}" for bit in UNUSED),
@@ -407,6 +433,7 @@ def test_alarms_with_axis_and_text() -> None:
     assert bytes(short)[:6] == b"\0\0\x55\0\xff\xff"
 
 
+@pytest.mark.covers("fanuc.cnc_rdalminfo")
 @pytest.mark.parametrize(
     ("type_", "length", "code"),
     [

@@ -21,6 +21,7 @@ def covers(*rows: str) -> pytest.MarkDecorator:
     return pytest.mark.covers(*(f"fanuc.{row}" for row in rows))
 
 
+@pytest.mark.covers("fanuc.cnc_clearophis", "fanuc.cnc_stopophis")
 @covers(
     "ODBAHIS.s_no", "ODBAHIS.e_no", "ODBAHIS.alm_his.alm_no", "ODBAHIS.alm_his.year", "ODBAHIS.alm_his.month",
     "ODBAHIS.alm_his.day", "ODBAHIS.alm_his.hour", "ODBAHIS.alm_his.minute", "ODBAHIS.alm_his.second",
@@ -46,6 +47,7 @@ def test_an_alarm_of_the_history_says_when_it_came() -> None:
     assert (code, found.s_no, found.e_no, found.alm_his[1].alm_no) == (OK, 2, 3, 700)
 
 
+@pytest.mark.covers("fanuc.cnc_clearophis", "fanuc.cnc_stopophis")
 @covers(
     "ODBHIS.alm_no",
     "ODBHIS.key_code",
@@ -74,6 +76,7 @@ def test_records_of_the_operation_history_say_what_was_done_and_when() -> None:
     assert (time.hour, time.minute, time.second) == (22, 58, 37)
 
 
+@pytest.mark.covers("fanuc.cnc_alarm")
 @covers("ODBALM.data", "ALMINFO.alm.alm_no", "ODBST.alarm")
 def test_alarms_as_bits_and_by_number() -> None:
     control, handle = attached()
@@ -139,6 +142,7 @@ def test_a_signal_of_the_panel_acts(name: str) -> None:
     assert (code, found.type, getattr(found, name)) == (OK, 1 << bit, value)
 
 
+@pytest.mark.covers("fanuc.cnc_wropnlgnrl")
 @covers("IODBGNRL.type")
 def test_general_purpose_signals_are_chosen_by_their_bits() -> None:
     _, handle = attached()
@@ -147,6 +151,7 @@ def test_general_purpose_signals_are_chosen_by_their_bits() -> None:
     assert (code, found.type, found.sgnal) == (OK, 0x0F, 0x0C)
 
 
+@pytest.mark.covers("fanuc.pmc_wrpmcrng")
 @covers("IODBPMC.type_a", "IODBPMC.datano_s", "IODBPMC.datano_e")
 def test_pmc_data_say_what_they_are_of() -> None:
     control, handle = attached()
@@ -197,6 +202,7 @@ def test_parameters_of_bits_and_words_act() -> None:
     assert [control.parameters.value(1851, axis) for axis in (1, 2, 3)] == [7, -8, 9]
 
 
+@pytest.mark.covers("fanuc.cnc_wrparas")
 @covers("ODBPARAIF.info.prm_type", "paramtype.two_word", "paramtype.word", "paramtype.byte", "paramtype.bit")
 @pytest.mark.parametrize(("number", "size"), [(3202, 1), (6710, 1), (1410, 2), (6711, 4)])
 def test_types_of_parameters_are_the_bytes_of_their_records(number: int, size: int) -> None:
@@ -242,6 +248,7 @@ def test_diagnosis_data_of_a_control_that_moves() -> None:
     assert places[1].machine < 0 < places[0].machine
 
 
+@pytest.mark.covers("fanuc.cnc_rdseqnum")
 @covers("ODBDY.pos.faxis.absolute", "ODBDY.pos.faxis.machine", "ODBDY.pos.faxis.relative", "ODBSEQ.data")
 def test_positions_of_all_axes_at_once() -> None:
     control, handle = attached()
@@ -291,6 +298,7 @@ def test_modal_data_of_the_block_that_was_asked_for() -> None:
     assert every[1].flag1 & 0x20
 
 
+@pytest.mark.covers("fanuc.cnc_opdi")
 @covers("ODBOPDI.u.cdata")
 def test_an_operation_signal_has_the_value_that_is_given() -> None:
     control, handle = attached()
@@ -375,6 +383,7 @@ def test_servo_modules_are_there_for_every_pair_of_axes(axes: int) -> None:
     assert (found.sv3min, found.sv5min) == (0 if axes > 2 else -1, 0 if axes > 4 else -1)
 
 
+@pytest.mark.covers("fanuc.cnc_opdi")
 @covers("cnc_opdi.sig4.cdata.bit5")
 @pytest.mark.parametrize("axis", [1, 5, 6])
 def test_a_servo_is_off_by_the_bit_of_its_axis(axis: int) -> None:

@@ -89,8 +89,11 @@ def _result(card: Card, command: str, immediate: bool, a: int, b: int) -> tuple[
         card.write_raw(where, b, 0, second // 16)
         operands["second"] = where
     card.write("events", 0)
+    behind = operands["target"] + result // 16
+    before = card.read_raw(behind, 0)
     install(card, event(command, "Allways", **operands))
     card.advance(1)
+    assert card.read_raw(behind, 0) == before  # the result is as wide as it is
     return card.read_raw(CELLS[result][2], 0, result // 16), _signed(compute(a, b), result)
 
 

@@ -64,7 +64,7 @@ def test_a_free_gear_ramps_to_ratio_times_the_source_and_follows_a_new_ratio() -
     assert card.read("mcsvel", 1) == -card.read("mcsvel", 0)
 
 
-@pytest.mark.covers("imc.param.gearratio")
+@pytest.mark.covers("imc.param.gearratio", "imc.concept.gear_law")
 def test_a_ratio_is_exact_over_any_time() -> None:
     card = ready_card()
     gear(card, 0)
@@ -110,7 +110,7 @@ def test_phasing_of_a_master_does_not_reach_a_slave_of_its_main_system() -> None
         assert (card.read("curpos", 0), card.read("curpos", 1)) == (100, slave)
 
 
-@pytest.mark.covers("imc.param.gearoutmod", "imc.param.gearoutvel")
+@pytest.mark.covers("imc.param.gearoutmod", "imc.param.gearoutvel", "imc.param.engear")
 @pytest.mark.parametrize(("mode", "speed", "after"), [(0, 3, 5), (FLAG, 3, 3), (FLAG, 0, 0)])
 def test_a_slave_that_leaves_keeps_its_speed_or_takes_another(mode: int, speed: float, after: float) -> None:
     card = ready_card()

@@ -110,6 +110,7 @@ def test_queues_that_take_an_instruction(
     assert len(SENDERS) + len(WAITERS) + len(PATHS) == 40
 
 
+@pytest.mark.covers("imc.IMC_ClearFIFO")
 def test_contour_points_go_to_queues_of_points_only(card: ToldCard, handle: lib.IMC_HANDLE) -> None:
     for fifo in (-1, I, Q, 5):
         assert lib.IMC_PutContourData(handle, [1, 2], 2, fifo) == lib.IMC_INVALID_FIFO
@@ -134,6 +135,7 @@ def test_a_full_queue_refuses_and_nothing_is_sent_again(card: ToldCard, handle: 
 AXIS_LAST = sorted(set(SENDERS) - {"IMC_SetMulParam", "IMC_InstallEvent"})
 
 
+@pytest.mark.covers("imc.IMC_GetCapData", "imc.IMC_GetParamBit")
 @pytest.mark.covers("imc.const.AXISNUM")
 def test_axes_that_the_card_does_not_have(card: ToldCard, handle: lib.IMC_HANDLE) -> None:
     for name in AXIS_LAST:
@@ -160,6 +162,7 @@ def test_axes_that_the_card_does_not_have(card: ToldCard, handle: lib.IMC_HANDLE
     assert card.told == []
 
 
+@pytest.mark.covers("imc.IMC_GetParam32", "imc.IMC_SetParam16")
 def test_the_axis_of_a_parameter_of_the_card_does_not_matter(card: ToldCard, handle: lib.IMC_HANDLE) -> None:
     assert lib.IMC_SetParam16(handle, lib.emstopLoc, 0x10, 99, I) == lib.IMC_OK
     assert lib.IMC_GetParam32(handle, lib.ticksLoc, -1)[0] == lib.IMC_OK
@@ -167,6 +170,13 @@ def test_the_axis_of_a_parameter_of_the_card_does_not_matter(card: ToldCard, han
     assert len(card.told) == 2
 
 
+@pytest.mark.covers(
+    "imc.IMC_GetParam16",
+    "imc.IMC_GetParam32",
+    "imc.IMC_GetParamBit",
+    "imc.IMC_SetParam16",
+    "imc.IMC_TurnParamBit",
+)
 def test_addresses_without_a_parameter(card: ToldCard, handle: lib.IMC_HANDLE) -> None:
     for at in (-1, 0, 3, 9, 24, 900, 1024, 40000):
         assert lib.IMC_SetParam16(handle, at, 1, 0, I) == lib.IMC_INVALID_PARAM, at
@@ -178,6 +188,7 @@ def test_addresses_without_a_parameter(card: ToldCard, handle: lib.IMC_HANDLE) -
     assert card.told == []
 
 
+@pytest.mark.covers("imc.IMC_GetParam16")
 @pytest.mark.parametrize("name", ["mcsmoving", "curpos", "naxis", "fwversion", "gin1", "poserr"])
 def test_parameters_that_cannot_be_written(card: ToldCard, handle: lib.IMC_HANDLE, name: str) -> None:
     at = PARAMETERS[name].address
@@ -196,6 +207,7 @@ def test_parameters_that_cannot_be_written(card: ToldCard, handle: lib.IMC_HANDL
     assert card.told == []
 
 
+@pytest.mark.covers("imc.IMC_GetCapData")
 @pytest.mark.covers("imc.const.limits")
 def test_numbers_out_of_range(card: ToldCard, handle: lib.IMC_HANDLE) -> None:
     bit, out = lib.IMC_INVALID_PARAM, lib.IMC_OUT_OF_RANGE
@@ -239,6 +251,9 @@ def test_numbers_out_of_range(card: ToldCard, handle: lib.IMC_HANDLE) -> None:
         (out, "IMC_GearFree", (nan, 1, 0, 0, I)),
         (out, "IMC_GearFree", (1.0, 1, 5, 0, I)),
         (out, "IMC_GearInDist", (1.0, 1, 0, 1, 5, 1000, 0, I)),
+        (out, "IMC_GearInDist", (1e300, 1, 0, 1, 2, 1000, 0, I)),
+        (out, "IMC_GearInDist", (-1e300, 1, 0, 1, 2, 1000, 0, I)),
+        (out, "IMC_GearInDist", (10**400, 1, 0, 1, 2, 1000, 0, I)),
         (out, "IMC_GearInDist", (1.0, 1, 0, 1, 0, 0, 0, I)),
         (out, "IMC_GearInTime", (1.0, 1, -1, 1000, 0, I)),
         (out, "IMC_HandWheel", (float("inf"), 1, 0, I)),
@@ -254,6 +269,7 @@ def test_numbers_out_of_range(card: ToldCard, handle: lib.IMC_HANDLE) -> None:
     assert (card.told, card.points) == ([], [])
 
 
+@pytest.mark.covers("imc.IMC_AddLineN", "imc.IMC_GetMulParam", "imc.IMC_SetParam16", "imc.IMC_SetParamBit")
 def test_the_largest_that_is_taken(handle: lib.IMC_HANDLE) -> None:
     event = lib.EventInfo.of(lib.CMD_SET16, src2=1, dest=(307, 0))
     assert lib.IMC_GetMulParam(handle, many(*[(12, 0, 3)] * 32), 32) == lib.IMC_OK
@@ -273,6 +289,7 @@ def test_contour_data_are_whole_points(card: ToldCard, handle: lib.IMC_HANDLE) -
     assert card.points == list(range(30))
 
 
+@pytest.mark.covers("imc.IMC_InstallEvent")
 def test_events_that_do_not_fit_any_more(card: ToldCard, handle: lib.IMC_HANDLE) -> None:
     event = lib.EventInfo.of(lib.CMD_SET16, src2=1, dest=(307, 0))
     card.room_for_events = 3
@@ -280,6 +297,7 @@ def test_events_that_do_not_fit_any_more(card: ToldCard, handle: lib.IMC_HANDLE)
     assert lib.IMC_InstallEvent(handle, [event] * 3, 3, I) == lib.IMC_OK
 
 
+@pytest.mark.covers("imc.IMC_InstallEvent")
 @pytest.mark.parametrize(
     ("event", "status"),
     [
@@ -302,6 +320,7 @@ def test_events_that_mean_nothing(
     assert card.told == []
 
 
+@pytest.mark.covers("imc.IMC_GetMulParam")
 def test_a_refused_read_leaves_its_structures_alone(handle: lib.IMC_HANDLE) -> None:
     elements = many((12, 0, 2), (9, 0, 2))
     elements[0].data[0] = 77
@@ -323,6 +342,7 @@ def test_points_for_a_path_queue_are_an_instruction_of_whole_points(
     assert card.points == []
 
 
+@pytest.mark.covers("imc.IMC_SetMulParam")
 def test_what_a_queue_never_holds_is_out_of_range_and_not_a_full_queue() -> None:
     card = Card(parse_card("ready = true\n[depths]\nififo = 64\nqfifo = 64\npfifo1 = 64\ncfifo = 100\n"))
     handle = opened(card)
@@ -351,6 +371,7 @@ def test_a_star_import_brings_functions_codes_and_addresses() -> None:
     assert {name for name in dir(lib) if name.endswith("Loc")} <= set(names)
 
 
+@pytest.mark.covers("imc.IMC_SetParam32")
 def test_floats_are_converted_where_c_converts_them(card: ToldCard, handle: lib.IMC_HANDLE) -> None:
     position: Any = -1234.9
     velocity: Any = 2.5 * 65536

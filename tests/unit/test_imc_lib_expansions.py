@@ -143,7 +143,9 @@ def test_source_types_are_addresses_of_velocities_and_positions(
 
 @pytest.mark.parametrize(
     ("raw", "words"),
-    [(0.5, (0x0000, 0x8000, 0x0000)), (-1.5, (0x0000, 0x8000, 0xFFFE)), (2**-32, (1, 0, 0))],
+    [(0.5, (0x0000, 0x8000, 0x0000)), (-1.5, (0x0000, 0x8000, 0xFFFE)), (2**-32, (1, 0, 0))]
+    # rounded to the nearest: 2/3 is AAAA AAAA.AAA...
+    + [(2.0 / 3.0, (0xAAAB, 0xAAAA, 0)), (-2.0 / 3.0, (0x5555, 0x5555, 0xFFFF)), (7.25, (0, 0x4000, 7))],
 )
 @pytest.mark.covers("imc.type.IMCFLOAT")
 def test_ratios_become_48_bits(
@@ -241,6 +243,13 @@ def test_events_take_the_operands_of_their_command(card: ToldCard, handle: lib.I
     assert card.told == [(0, InstallEvents(told))]
 
 
+@pytest.mark.covers(
+    "imc.IMC_GetMulParam",
+    "imc.IMC_GetParam16",
+    "imc.IMC_GetParam32",
+    "imc.IMC_GetParam48",
+    "imc.IMC_GetParamBit",
+)
 def test_reading(card: ToldCard, handle: lib.IMC_HANDLE) -> None:
     words = {152: 0x0000, 153: 0xFFFF, 175: 0x0001, 176: 0x0000, 177: 0xFFFE}
     card.memory = {(at, 1): word for at, word in words.items()}

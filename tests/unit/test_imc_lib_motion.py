@@ -42,9 +42,13 @@ def test_relative_move_counts_from_where_the_axis_is_when_it_starts(program: Pro
     assert program.get("curpos") == 750
 
 
-def test_a_relative_move_by_nothing_goes_nowhere(program: Program) -> None:
-    program.card.write("mcstgpos", 5000)
-    program.ok(lib.IMC_MoveRelative, 0, 0, IF)
+@pytest.mark.covers("imc.IMC_MoveRelative", "imc.IMC_MoveSuperimposed", "imc.IMC_Phasing")
+@pytest.mark.parametrize(
+    ("move", "system"), [("IMC_MoveRelative", "mcs"), ("IMC_MoveSuperimposed", "pcs"), ("IMC_Phasing", "pcs")]
+)
+def test_a_relative_move_by_nothing_goes_nowhere(program: Program, move: str, system: str) -> None:
+    program.card.write(f"{system}tgpos", 5000)
+    program.ok(getattr(lib, move), 0, 0, IF)
     program.run(500)
     assert program.get("curpos") == 0
 
@@ -257,6 +261,11 @@ def test_position_over_time(program: Program) -> None:
     program.run(12)
     assert (program.get("curpos", 1), program.get("mcsvel", 1)) == (5000, 0)
     assert (program.get("startsyn", 1), program.get("enasyn", 1)) == (0, 0)
+    program.card.write("slaveabs", -1, axis=1)  # left over: it is a distance all the same
+    program.ok(lib.IMC_MoveInTime, 300, -700, 1, IF)
+    program.set("startsyn", -1, 1)
+    program.run(305)
+    assert program.get("curpos", 1) == 4300
 
 
 @pytest.mark.covers("imc.IMC_MovePP", "imc.concept.startsyn")

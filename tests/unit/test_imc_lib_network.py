@@ -37,6 +37,7 @@ def test_find_lists_the_adapters_and_only_while_no_card_is_open() -> None:
     assert lib.IMC_FindNetCard(info) == (lib.IMC_OK, 2)
 
 
+@pytest.mark.covers("imc.IMC_FindNetCard")
 def test_find_needs_a_place_for_its_answer() -> None:
     nowhere: Any = None
     assert lib.IMC_FindNetCard(nowhere) == (lib.IMC_INVALID_PARAM, 0)
@@ -81,6 +82,7 @@ def test_time_out_and_mode_of_openx() -> None:
     assert lib.IMC_OpenX(1, 0, 40, 0)[0] == lib.IMC_OK
 
 
+@pytest.mark.covers("imc.IMC_Open")
 @pytest.mark.covers("imc.IMC_OpenUsePassword", "imc.option.password")
 def test_password_of_4_to_99_characters() -> None:
     long = "p" * 99
@@ -98,6 +100,7 @@ def test_password_of_4_to_99_characters() -> None:
     assert lib.IMC_OpenUsePassword(0, 9, "12345678")[0] == lib.IMC_DEVICE_NOT_FOUND
 
 
+@pytest.mark.covers("imc.IMC_Open")
 def test_firmware_of_another_generation_is_not_opened() -> None:
     lib.attach(ToldCard(fwversion=410), ToldCard(fwversion=305))
     assert lib.IMC_Open(0, 0) == (lib.IMC_VERSION_ERROR, None)
@@ -119,6 +122,7 @@ def test_a_closed_card_cannot_be_reached() -> None:
     assert lib.IMC_SetParam16(again, lib.runLoc, -1, 0, lib.SEL_IFIFO) == lib.IMC_OK
 
 
+@pytest.mark.covers("imc.IMC_Close")
 def test_what_is_no_handle_is_told_so() -> None:
     old = opened(ToldCard())
     lib.attach(ToldCard())
@@ -129,6 +133,7 @@ def test_what_is_no_handle_is_told_so() -> None:
         assert lib.IMC_GetCapData(nothing, 1, 0) == (lib.IMC_INVALID_HANDLE, [], 0, 0)
 
 
+@pytest.mark.covers("imc.IMC_ClearFIFO", "imc.IMC_Open")
 def test_a_bad_line_keeps_instructions_from_the_card() -> None:
     card = ToldCard()
     (port,) = lib.attach(card)

@@ -92,6 +92,20 @@ def test_limits_work_by_their_polarity_and_only_when_they_are_used() -> None:
         assert bool(int(card.read("aiolat")) & 1) == (bool(text) != bool(control & 1))
 
 
+@pytest.mark.covers("imc.param.aiolat", "imc.param.clraiolat")
+def test_a_latched_terminal_is_cleared_by_its_own_bit() -> None:
+    card = ready_card("[[axis]]\nlimit_positive = 100.0\norigin = [30.0, 60.0]\n")
+    set_now(card, ("aioctr", 0x11))  # positive limit and origin become active when they close
+    move_absolute(card, 200)
+    card.wait()
+    latched = int(card.read("aiolat"))
+    assert latched == 0b101
+    for written, left in ((0b010, 0b101), (0b100, 0b001), (0b1001, 0)):
+        send(card, IFIFO, ("clraiolat", written))
+        card.advance(1)
+        assert card.read("aiolat") == left
+
+
 @pytest.mark.covers("imc.param.psoftlim", "imc.param.nsoftlim")
 @pytest.mark.parametrize(("way", "bit"), [(1, 4), (-1, 8)])
 def test_software_limits_work_when_they_are_switched_on(way: int, bit: int) -> None:

@@ -235,6 +235,7 @@ def test_smoothing_is_the_mean_of_the_last_increments_and_loses_nothing(span: in
     assert (smooth.read("curpos"), smooth.read("moving"), smooth.read("smoothing")) == (1234, 0, 0)
 
 
+@pytest.mark.covers("imc.param.profiling", "imc.param.smoothing", "imc.param.moving", "imc.param.mcsmoving")
 def test_moving_lasts_as_long_as_smoothing_does() -> None:
     card = ready_card()
     set_now(card, ("smooth", 32))
@@ -249,17 +250,19 @@ def test_moving_lasts_as_long_as_smoothing_does() -> None:
 def test_pause_brakes_every_axis_and_lets_it_go_on() -> None:
     card = ready_card()
     move_absolute(card, 3000, 0)
-    set_now(card, ("mcstgvel", 20, 1))
+    set_now(card, ("mcstgvel", 20, 1), ("mcstgvel", -17, 3), ("pcstgvel", 6, 2))
     card.advance(40)
     send(card, IFIFO, ("hpause", FLAG))
     card.advance(60)
     held = card.read("curpos", 0)
-    assert (card.read("curvel", 0), card.read("curvel", 1), card.read("moving", 0)) == (0, 0, FLAG)
+    assert [card.read("curvel", i) for i in range(4)] == [0] * 4
+    assert card.read("moving", 0) == FLAG
     card.advance(50)
     assert card.read("curpos", 0) == held < 3000
     send(card, IFIFO, ("hpause", 0))
     card.advance(300)
-    assert (card.read("curpos", 0), card.read("curvel", 1)) == (3000, 20)
+    assert card.read("curpos", 0) == 3000
+    assert [card.read("curvel", i) for i in (1, 2, 3)] == [20, 6, -17]
 
 
 def test_haltstep_pauses_one_axis_at_once_or_with_its_deceleration() -> None:
@@ -412,6 +415,10 @@ def test_the_main_encoder_is_scaled_and_shows_its_speed() -> None:
     set_now(card, ("encpfactor", 1.0))
     card.advance(1)
     assert (card.read("encp"), card.read("encpvel")) == (140, 40)
+    set_now(card, ("encpfactor", 0.3125))
+    for k in range(1, 12):  # 12.5 a cycle: halves are kept
+        card.advance(1)
+        assert (card.read("encp"), card.read("encpvel")) == (140 + 25 * k // 2, 12.5)
 
 
 def test_feedback_can_follow_the_command() -> None:
@@ -422,6 +429,8 @@ def test_feedback_can_follow_the_command() -> None:
     assert (card.read("encp"), card.read("poserr"), card.kernel.servo.actual[0]) == (100, 0, 0)
 
 
+@pytest.mark.covers("imc.param.profiling", "imc.param.moving", "imc.param.mcsmoving", "imc.param.pcsmoving")
+@pytest.mark.covers("imc.param.motion")
 @pytest.mark.parametrize("name", ["mcsgo", "pcsgo", "mcstgvel", "pcstgvel"])
 def test_an_axis_that_has_just_been_told_to_move_shows_it_before_the_next_cycle(name: str) -> None:
     card = ready_card()

@@ -48,7 +48,7 @@ def test_coordinates_are_the_axes_they_are_mapped_to(space: int) -> None:
     )
 
 
-@pytest.mark.covers("imc.param.pathacc1", "imc.param.pathacc2", "imc.param.segtgvel2")
+@pytest.mark.covers("imc.param.pathacc1", "imc.param.pathacc2", "imc.param.segtgvel2", "imc.param.segtgvel1")
 @pytest.mark.parametrize("space", [1, 2])
 def test_a_segment_has_its_speed_and_the_acceleration_of_its_space(space: int) -> None:
     card = ready_card()

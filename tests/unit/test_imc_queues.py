@@ -159,9 +159,14 @@ def test_a_path_queue_is_off_until_it_is_enabled(space: int) -> None:
     send(card, queue, ("user16b0", 1))
     card.advance(10)
     assert (_cells(card)[0], card.waiting_words(queue)) == (0, 3)
-    send(card, IFIFO, (f"startpath{space}", FLAG))
-    card.advance(1)
-    assert (_cells(card)[0], card.waiting_words(queue)) == (1, 0)
+    for k in range(1, 4):
+        send(card, queue, (f"user16b{k}", 5 * k))
+    send(card, IFIFO, (f"startpath{3 - space}", FLAG))  # the other space is another queue
+    card.advance(3)
+    assert (_cells(card)[0], card.waiting_words(queue)) == (0, 12)
+    send(card, IFIFO, (f"startpath{3 - space}", 0), (f"startpath{space}", FLAG))
+    card.advance(1)  # and carries out in a cycle whatever does not take time
+    assert (_cells(card)[:3], card.waiting_words(queue)) == ([1, 5, 10], 0)
 
 
 def test_a_full_queue_takes_nothing_and_drains_with_time() -> None:

@@ -12,6 +12,7 @@ import numpy.typing as npt
 import pytest
 
 from polycnc.jit import KNOWN_NUMBA, allocating, call_at, compile_entries, compiled, detached, entry
+from polycnc.kernel import make_state as make_kernel_state
 
 Floats = npt.NDArray[np.float64]
 
@@ -108,6 +109,8 @@ def test_entries_are_compiled_beforehand_for_what_their_annotations_say(
         left_out = compile_entries(__name__, [make_state()], lambda name, part: seen.append(f"{name} {part}"))
     assert (left_out, seen) == (0, ["_shift_twice 0.0", "_shifted 0.25", "work 0.5", "work_twice 0.75"])
     assert len(work_twice.signatures) == 1  # type: ignore[attr-defined]
+    # The kernel's own ones all: what were left out would be compiled for nothing, at each warm-up, and at first use.
+    assert compile_entries("polycnc.kernel", [make_kernel_state(3)], lambda name, part: None) == 0
 
 
 @compiled

@@ -156,8 +156,6 @@ def test_functions_have_their_words_in_their_events(tmp_path: Path) -> None:
         ("o1 sub\nM72\no1 endsub\nM70\no1 call", "no modes have been kept"),
         ("G41.1 D3\nM70\nG40\nM72", "radius compensation cannot be put in force again"),
         ("M61", "M61 without Q"),
-        ("M66 P1 L0", "M66 is not supported yet"),
-        ("M98 P100", "M98 is not supported yet"),
         ("M62 P1 M62 P2", "stands twice"),
     ],
 )

@@ -100,3 +100,18 @@ def test_a_control_refuses_with_its_own_errors_alone() -> None:
             made.set_switches(dry_run=True, single_block=True)
         assert made.status() == before
         assert made.switches.single_block is False
+
+
+@pytest.mark.parametrize(("name", "axis"), [("no such alarm", None), ("", "X"), ("following_error", "Q")])
+def test_an_alarm_that_the_control_does_not_have_is_refused_and_changes_nothing(
+    name: str, axis: str | None
+) -> None:
+    made = Control(cnc_machine(), data=ControlData(reference_required=False))
+    made.programs.create("PART", "G1 X20 F3000\nM30\n")
+    made.select_program("PART")
+    made.cycle_start()
+    made.advance(7)
+    before = made.status()
+    with pytest.raises(ControlError, match=r"there is no (alarm|axis)"):
+        made.put_alarm(name, axis=axis)
+    assert (made.status(), made.alarms.history()) == (before, ())

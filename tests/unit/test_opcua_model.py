@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import os
 from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -18,20 +19,31 @@ from asyncua.server.address_space import AttributeValue, NodeData
 from polycnc.cnc import Control, Mode, RunState
 from polycnc.errors import UsageError
 from polycnc.servers.opcua import CNC_TYPES, MACHINE_TOOL_TYPES, _bounds
-from polycnc.servers.opcua._cnc import codes
+from polycnc.servers.opcua._cnc import CHANNEL as CNC_CHANNEL
 from polycnc.servers.opcua._identity import CERTIFICATE, KEY, Users, identity_of
-from polycnc.servers.opcua._model import UNITS
+from polycnc.servers.opcua._machine_tool import CHANNEL as TOOL_CHANNEL
+from polycnc.servers.opcua._machine_tool import PRODUCTION_STATE
+from polycnc.servers.opcua._model import UNITS, Type
 from polycnc.servers.opcua._moment import At, Fixed
 from polycnc.servers.opcua._node_sets import IN_ORDER, find_node_sets
 from polycnc.servers.opcua._standard import bounded_server
+from polycnc.servers.plant import FACTS, see
 
 
 def at(**fields: Any) -> At:
     """Return a status of a mill whose channel has these fields."""
     control = Control("mill3")
     fixed = Fixed.of("m", control, {})
-    status = control.status()
-    return At(status._replace(channels=(status.channel._replace(**fields),)), fixed)
+    seen = see(lambda: control)()
+    status = seen.status
+    return At(replace(seen, status=status._replace(channels=(status.channel._replace(**fields),))), fixed)
+
+
+def shown(of: Type, name: str, **fields: Any) -> Any:
+    """Return what a member shows of a status whose channel has these fields."""
+    member = next(each for each in of.members if each.name == name)
+    assert member.read is not None
+    return member.read(at(**fields))
 
 
 # OPC 40502, tables of CncChannelStatus (0 active, 1 interrupted, 2 reset) and CncChannelProgramStatus (0 stopped, 1
@@ -46,16 +58,14 @@ def at(**fields: Any) -> At:
     ],
 )  # fmt: skip
 def test_states_of_a_run(state: RunState, channel: int, program: int, production: int) -> None:
-    found = at(run_state=state)
-    assert (found.channel_state, found.program_state, found.production_state) == (
-        channel,
-        program,
-        production,
-    )
+    assert shown(CNC_CHANNEL, "ActStatus", run_state=state) == channel
+    assert shown(TOOL_CHANNEL, "ChannelState", run_state=state) == channel
+    assert shown(CNC_CHANNEL, "ActProgramStatus", run_state=state) == program
+    assert shown(PRODUCTION_STATE, "CurrentState/Number", run_state=state) == production
 
 
 def test_a_run_that_waits_for_its_program_is_waiting() -> None:
-    assert at(run_state=RunState.ACTIVE, starved=True).program_state == 2
+    assert shown(CNC_CHANNEL, "ActProgramStatus", run_state=RunState.ACTIVE, starved=True) == 2
 
 
 @pytest.mark.parametrize(
@@ -66,12 +76,15 @@ def test_a_run_that_waits_for_its_program_is_waiting() -> None:
     ],
 )  # fmt: skip
 def test_modes(mode: Mode, operation: int, channel: int) -> None:
-    found = at(mode=mode)
-    assert (found.operation_mode, found.channel_mode) == (operation, channel)
+    assert shown(CNC_CHANNEL, "ActOperationMode", mode=mode) == operation
+    assert shown(TOOL_CHANNEL, "ChannelMode", mode=mode) == channel
 
 
-def test_codes_are_the_whole_numbers_of_words() -> None:
-    assert codes(["G54", "1", "G38.2", "M30", "X", ""]) == [54, 1, 30]
+def test_every_value_of_a_machine_is_a_fact_or_fixed() -> None:
+    for row in (*CNC_TYPES, *MACHINE_TOOL_TYPES):
+        for member in row.members:
+            facts = getattr(member.read, "facts", (getattr(member.read, "fact", None),))
+            assert all(each is None or each in FACTS for each in facts), member.name
 
 
 def test_units_have_the_numbers_of_their_codes() -> None:

@@ -84,6 +84,7 @@ def example(tmp_path: Path) -> Iterator[Example]:
 # ---------------------------------------------------------------------- axes and positions
 
 
+@pytest.mark.covers("cpl.AXO")
 @pytest.mark.covers(
     "cpl.ex.1398", "cpl.arg.coordsel", "cpl.seltype.0", "cpl.seltype.1", "cpl.err.RUNTIME_AXIS"
 )
@@ -146,12 +147,15 @@ def test_physical_axes_are_read_from_everywhere(example: Example) -> None:
     example.run("N1 G0 A33.5", channel=3)
     example.run("N1 G0 X2=4.5 Y2=-6", channel=2)
     example.run("N1 G0 X2")
-    found = example.run('10 WAIT\n30 #A=APOS(4) : #B=APOS("A") : #C=APOS(8) : #D=SPOS(1) : #E=SPOS("Y2")')
-    assert [found[f"#{name}"] for name in "ABCDE"] == [4.5, 33.5, 33.5, 2, -6]
+    found = example.run(
+        '10 WAIT\n30 #A=APOS(4) : #B=APOS("A") : #C=APOS(8) : #D=SPOS(1) : #E=SPOS("Y2") : #F=SPOS(4)'
+    )
+    assert [found[f"#{name}"] for name in "ABCDEF"] == [4.5, 33.5, 33.5, 2, -6, 4.5]
     assert example.refuses("APOS(7)") == "1938"
     assert example.refuses('SPOS("U")') == "1938"
 
 
+@pytest.mark.covers("cpl.CPROBE", "cpl.PPOS")
 @pytest.mark.covers("cpl.ex.1602", "cpl.ex.1635")
 def test_measured_positions_of_the_own_channel(example: Example) -> None:
     text = (
@@ -175,6 +179,7 @@ def test_a_program_reaches_the_axes_of_its_channel_only(example: Example) -> Non
     assert example.pnc.axes["X2"].setpoint == 0
 
 
+@pytest.mark.covers("cpl.CPOS")
 @pytest.mark.covers("cpl.axis.sync", "cpl.coord")
 def test_axes_go_from_channel_to_channel_and_indices_follow(example: Example) -> None:
     example.run("N1 G0 X3 Y4 Z5")
@@ -292,6 +297,7 @@ def test_the_rest_of_a_way_is_not_cancelled_by_another_channel(example: Example)
     assert [found[f"#{name}%"] for name in "ABCDEF"] == [102, 10, 1, 0, 0, 10]
 
 
+@pytest.mark.covers("cpl.PROBE")
 @pytest.mark.covers("cpl.ex.2607", "cpl.err.1938", "cpl.err.1970")
 def test_errors_of_another_channel_are_told_in_their_order(example: Example) -> None:
     example.start("1 A=CPOS(9)", channel=2)
@@ -455,6 +461,7 @@ def test_feeds_per_revolution_and_program_stops_are_seen(example: Example) -> No
     assert example.pnc.axes["X"].setpoint == 5
 
 
+@pytest.mark.covers("cpl.SCS")
 @pytest.mark.covers("cpl.err.SERCOS_LOCKED", "cpl.SCS.result.1", "cpl.SCSL.result.1", "cpl.err.SCS_ACCESS")
 def test_a_locked_service_channel_leaves_the_old_value(example: Example) -> None:
     drives = example.pnc.system.drives

@@ -85,6 +85,11 @@ def test_shifts_of_the_program_lie_between_program_and_workpiece_coordinates(cel
     assert found == [2, 13.5, 13.5, -2, 11.5, 5, 1.5, 12]
     assert cell.values("N1 G168 X10\nN2 G268 X4\nN3 G269\nN4 G1 X1 F900\n5 WAIT", "MPOS(1)") == [11]
     assert cell.values("N1 G168 X10\nN2 G268 X4\nN3 G169\nN4 G1 X1 F900\n5 WAIT", "MPOS(1)") == [1]
+    # G92 lies nearest to the program: where X shows 5 it shows -3 from then on.
+    found = cell.values(
+        "N1 G168 X10\nN2 G1 X5 F900\nN3 G92 X-3\nN4 G1 X4\n5 WAIT", "AXO(1)", "CPOS(1)", "WPOS(1)"
+    )
+    assert found == [8, 4, 22]
 
 
 @pytest.mark.covers("cpl.nc.G60_G67")
@@ -97,6 +102,7 @@ def test_a_contour_shift_moves_the_contour_until_it_is_off(cell: Cell) -> None:
     assert found == [10, 0, 67]
 
 
+@pytest.mark.covers("cpl.SCL")
 @pytest.mark.covers("cpl.nc.G37_G38")
 def test_contours_are_scaled_turned_and_mirrored_about_the_pole(cell: Cell) -> None:
     found = cell.values(
@@ -107,6 +113,7 @@ def test_contours_are_scaled_turned_and_mirrored_about_the_pole(cell: Cell) -> N
     assert cell.values("N1 G38 X2\nN2 G39\nN3 G1 X4 F900\n4 WAIT", "MPOS(1)", "SCL(2,1)") == [4, 1]
 
 
+@pytest.mark.covers("cpl.DPC")
 @pytest.mark.covers("cpl.nc.G138", "cpl.cs.BCS", "cpl.cs.ACS", "cpl.cs.MCS")
 def test_a_turned_workpiece_lies_behind_the_workpiece_coordinates(cell: Cell) -> None:
     found = cell.values(
@@ -225,6 +232,7 @@ def test_tables_with_a_name_are_files_in_the_root(cell: Cell) -> None:
     assert cell.values("", 'TC(2,39,"GK33")', 'TC(1,39,"GK33",0)') == [0.25, pytest.approx(38.1)]
 
 
+@pytest.mark.covers("cpl.TDA")
 def test_tables_and_tool_data_are_permanent(cell: Cell) -> None:
     cell.report(
         '1 TC(2,40,5)=1.25 : FXC(2,59,3)=-4 : FXC("Y",260,0)=6 : TDA(2,3,8)="MILL" : TDA(2,3,9)=312000'
@@ -266,6 +274,7 @@ def test_active_functions_feeds_and_positions_are_read(cell: Cell) -> None:
         "202.s", "205.1.s", "205.2.s", "205.3.s", "212.1.s", "212.2.s",
     )),
     *(f"cpl.SDR.{row}" for row in ("68.1.n", "68.2.n", "168.1.n", "168.2.n", "268.1.n", "268.2.n", "202.s")),
+    "cpl.ex.2298",
 )  # fmt: skip
 def test_what_is_programmed_and_what_is_active_are_told_apart(cell: Cell) -> None:
     (cell.folder / "macoda.dat").write_text("6010 00010 = 33\n")
@@ -313,6 +322,7 @@ def test_the_block_that_is_executed_is_not_the_one_that_is_prepared(cell: Cell) 
     assert cell.values(blocks, "SD(1,2,1)") == [1]
 
 
+@pytest.mark.covers("cpl.NCF")
 @pytest.mark.covers("cpl.ex.2108")
 def test_a_function_is_programmed_again_by_its_name(cell: Cell) -> None:
     lines = cell.report(
@@ -335,6 +345,7 @@ def test_search_positions_are_of_axes_that_machine(cell: Cell) -> None:
 # ---------------------------------------------------------------------- AXP
 
 
+@pytest.mark.covers("cpl.CPOS")
 @pytest.mark.covers("cpl.AXP", "cpl.ex.2367", "cpl.axistype.0", "cpl.axistype.1")
 def test_axes_are_addressed_by_their_index(cell: Cell) -> None:
     (cell.folder / "P2367").write_text(
@@ -415,6 +426,7 @@ def test_machine_parameters_are_read_and_the_root_may_say_otherwise(cell: Cell, 
     assert shown == "OTHER" if kind == "$" else float(shown) == 7
 
 
+@pytest.mark.covers("cpl.MCA")
 @pytest.mark.covers("cpl.ex.2077", "cpl.param.1001_00004")
 def test_the_type_of_axis_movement_is_an_integer(cell: Cell) -> None:
     assert cell.values(
@@ -551,6 +563,7 @@ def test_a_coordinate_is_measured(measuring: Cell) -> None:
     assert not any("deflected" in message.text for message in measuring.last.messages)
 
 
+@pytest.mark.covers("cpl.CPOS")
 @pytest.mark.covers("cpl.ex.2307", "cpl.nc.MSG_text")
 def test_no_contact_is_told_and_no_position_is_given(measuring: Cell) -> None:
     blocks = (
@@ -579,6 +592,7 @@ def test_what_measured_values_consider(measuring: Cell) -> None:
     assert found == pytest.approx([99.5 / 25.4] * 3, abs=1e-6)
 
 
+@pytest.mark.covers("cpl.CPROBE", "cpl.PPOS")
 def test_one_axis_is_measured_in_passing_and_a_stop_is_reached(measuring: Cell) -> None:
     found = measuring.values("N1 G1 Y3 F900\nN2 G275 Z-20 F900", "SD(9)", "PROBE(3)", "PPOS(3)", "CPOS(3)")
     assert found == pytest.approx([0, -12.345, -12.345, -20], abs=1e-5)

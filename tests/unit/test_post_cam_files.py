@@ -781,3 +781,34 @@ def test_a_feed_per_revolution_that_a_control_file_cannot_say_is_an_error(words:
     text = "LOADTL/1\nSPINDL/RPM,900,CLW\nFEDRAT/90,MMPM\nGOTO/0,0,-1\nGOTO/1,0,-1\nFEDRAT/0.1,MMPR\n"
     with pytest.raises(ProgramError, match="a feed per revolution, and no macro"):
         post_file(parse_tool_path(text + words + "GOTO/9,0,-1\nGOTO/9,9,-1\n"), "grbl")
+
+
+@pytest.mark.parametrize(
+    ("statement", "line", "what", "hint"),
+    [
+        ("ROTABL/30,INCR", 8, "ROTABL moves the tool or its coordinates", "Let the CAM system write points"),
+        (
+            "CYCLE/DEEP,DEPTH,12,CLEAR,2",
+            8,
+            "pecks that does not say how deep they are",
+            "Write STEP and a length.",
+        ),
+        (
+            "TLAXIS/0,0,-1",
+            9,
+            "the tool is tilted, and the control file has no rotary axes",
+            "keep the tool axis 0, 0, 1",
+        ),
+    ],
+)
+def test_what_a_mill_cannot_do_is_refused_at_its_line(
+    statement: str, line: int, what: str, hint: str
+) -> None:
+    text = HOLES.split("CYCLE")[0] + f"RAPID\nGOTO/1,2,3\nFEDRAT/90\nGOTO/1,2,-3\n{statement}\nGOTO/4,5,-3\n"
+    place = text[: text.index(statement)].count("\n") + 1
+    with pytest.raises(ProgramError) as error:
+        post_file(parse_tool_path(text), "fanuc-mill")
+    assert what in error.value.what
+    assert hint in (error.value.hint or "")
+    assert error.value.position is not None
+    assert error.value.position.line == place + line - 8

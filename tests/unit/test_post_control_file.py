@@ -10,12 +10,15 @@ import pytest
 from polycnc.errors import ConfigurationError, ProgramError, UsageError
 from polycnc.post import (
     CONTROLS,
+    NO_DIALECT,
     control_file_reference,
     load_control,
     parse_control,
+    parse_tool_path,
     program_file,
     shipped_text,
 )
+from polycnc.runner import post_file
 from support.post_controls import control, posted
 
 DOCS = Path(__file__).resolve().parents[2] / "docs"
@@ -233,7 +236,9 @@ def test_errors_have_their_place_in_every_kind_of_text(value: str, line: int, co
 # --- the control files that come with polycnc
 
 
-@pytest.mark.parametrize("name", CONTROLS)
+@pytest.mark.parametrize(
+    "name", [each for each in CONTROLS if load_control(each).parameters.dialect != NO_DIALECT]
+)
 def test_shipped_files_write_plain_blocks(name: str) -> None:
     control = load_control(name)
     written: list[str] = []
@@ -287,6 +292,7 @@ def test_shipped_files_are_places_to_begin(name: str, tmp_path: Path) -> None:
         "grbl",
         "haas",
         "linuxcnc",
+        NO_DIALECT,
     )
 
 
@@ -396,3 +402,25 @@ def test_a_character_that_the_encoding_has_not_is_found_when_the_file_is_read(te
 def test_blanks_beside_what_writes_nothing_make_no_block(line: str) -> None:
     used = control({"sequence_place": 1}, {"STOP": f"!*G17!\n{line}", "PROGRAM_END": "", "PROGRAM_START": ""})
     assert posted("STOP\n", used)[0] == []
+
+
+@pytest.mark.parametrize("there", ["ARC_CW", "ARC_CCW"])
+def test_an_arc_macro_without_the_other_one_is_remarked(there: str) -> None:
+    missing = "ARC_CCW" if there == "ARC_CW" else "ARC_CW"
+    control = parse_control(
+        shipped_text("grbl").replace(f"\n{missing} = '''", "\nWORD_UNUSED = '''"), "mine.toml"
+    )
+    path = "LOADTL/1\nRAPID\nGOTO/0,-3.5,2\nFEDRAT/700,MMPM\nCIRCLE/0,0,2,0,0,1,3.5\nGOTO/3.5,0,2\n"
+    remarks = post_file(parse_tool_path(path), control).summary.remarks
+    text = f"the macro {there} is never called: without {missing} all arcs become lines"
+    assert [(remark.line, remark.text) for remark in remarks] == [(0, text)]
+    straight = path.split("CIRCLE")[0] + "GOTO/3,4,2\n"
+    assert post_file(parse_tool_path(straight), control).summary.remarks == ()
+
+
+def test_a_macro_for_a_word_that_is_left_out_is_remarked() -> None:
+    control = parse_control(shipped_text("grbl") + "\nWORD_REWIND = '''\n!M00!\n'''\n", "mine.toml")
+    remarks = post_file(parse_tool_path("LOADTL/1\nREWIND/1\nRAPID\nGOTO/1,2,3\n"), control).summary.remarks
+    assert [remark.text for remark in remarks] == [
+        "the macro WORD_REWIND is never called: REWIND says nothing to a control, and is left out"
+    ]

@@ -14,6 +14,7 @@ ENDS = [
     ("#<a>=2\n#<_B c>=3\nG0 X[#<A>**#<_bc> + 2 * 3]", 14.0),
     ("#5=6\nG0 X[#[2+3] / 4 + 7 mod 4]", 4.5),
     ("G0 X[-[2] ** 2]", 4.0),
+    ("G0 X[FUP[COS[90]] + FUP[COS[-90]] + 3*FUP[COS[270]] + 5*FUP[SIN[180]] + FIX[SIN[360]]]", 3.0),
     ("G0 X[2 + 1 gt 2 and 0 or 5]", 1.0),
     ("G0 X[ATAN[1]/[1] + ROUND[2.5] + FIX[-1.5] + FUP[1.2] + ABS[-1]]", 49.0),
     ("G0 X[EXISTS[#<no>] + EXISTS[#<_metric>]]", 1.0),
@@ -32,6 +33,9 @@ ENDS = [
     ("o9 sub\nG0 X#1\nM2\no9 endsub\no[4+5] call [8]\nG0 X1", 8.0),  # M2 ends everything
     ("/ #1=5\nG0 X[#1+1]", 6.0),
     ("%\n#1=5\nG0 X#1\n%\nG0 X1", 5.0),
+    ("#1=2\nM98 P70 L3\nG0 X[#1+#<_call_level>]\nM2\nO70\n#1=[#1*2+#<_call_level>]\nM99", 23.0),
+    ("M66 P1 L0\n#1=#5399\nM66 P2 L3 Q.02\n#1=[#1*10+#5399]\nM66 P2 L4 Q1\nM66 E3\nG0 X[#1+#5399+7]", 6.0),
+    ("G91 M66 P1 L2 Q.03 G0 X3\nG0 X[#5399-1]", 1.0),
 ]  # fmt: skip
 
 
@@ -92,8 +96,25 @@ REFUSED = [
     ("o1 sub\no1 call\no1 endsub\no1 call", "nested more than 10 deep", 2),
     ("G0 X[1", "']' is missing", 1),
     ("o1 while [1]\no1 endwhile", "without a block", 1),
-    ("G0 X#<_ini[a]b>", "no INI file", 1),
+    ("G0 X#<_ini[a]b>", "is not there", 1),
     ("#1=1\nG1 X[#1] Q5x", "a number is missing", 2),
+    ("G0 X1\nM98 P70", "no sub-program O70 that ends with M99", 2),
+    ("G0 X1\nM98 P70\nM2\nO70\nG0 X2", "no sub-program O70 that ends with M99", 2),
+    ("G0 X1 M98 P70\nM2\nO70\nM99", "M98 or M99 with other words", 1),
+    ("M98\nM2", "M98 without P", 1),
+    ("M98 P1.5\nM2", "P1.5 is no whole number", 1),
+    ("M98 P70 L-1\nM2\nO70\nM99", "L-1 is no whole number", 1),
+    ("o1 sub\nM99\no1 endsub\no1 call", "M99 in a sub-program of SUB", 2),
+    ("M98 P70\nM2\nO70\nM98 P70\nM99", "nested more than 10 deep", 4),
+    ("M66 L3", "M66 without an input", 1),
+    ("G0 X1\nM66 P1 E2", "two inputs", 2),
+    ("M66 P1 L3", "L3 without a time", 1),
+    ("M66 P1 L3 Q0", "L3 without a time", 1),
+    ("M66 E1 L1 Q2", "read at once", 1),
+    ("M66 P1 L5 Q2", "no such way to wait", 1),
+    ("M66 P64 L0", "there are 64 such inputs", 1),
+    ("M66 P1.5 L0", "no whole number", 1),
+    ("M66 P1 M66 P2", "M66 twice", 1),
 ]
 
 

@@ -9,6 +9,7 @@ import pytest
 from polycnc.cnc import Control, ControlError, RunState
 from polycnc.controllers.bosch import Pnc
 from polycnc.nc import ProgramText
+from support.often import often
 
 MOVES = ["G90", "G1 F60000 X1 Z2", "G91", "X2", "Y3.5", "X4 Z-1", "G90", "X20", "Y-6"]
 STATEMENTS = {"fanuc": "#101=1", "bosch": "", "linuxcnc": "", "grbl": ""}
@@ -48,7 +49,7 @@ CASES = [
 
 
 @pytest.mark.parametrize(("dialect", "language", "statement"), CASES)
-@pytest.mark.parametrize("line", [1, 2, 5, 8, 10])
+@pytest.mark.parametrize("line", often([1, 2, 5, 8, 10], 3))
 def test_a_searched_block_begins_where_the_whole_program_would(
     dialect: str, language: bool, statement: bool, line: int
 ) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import socket
 from collections.abc import Awaitable, Callable
 from typing import Any, TypeVar
 
@@ -43,6 +44,24 @@ async def ended(reader: asyncio.StreamReader) -> bytes:
         return b""
 
 
+DOORS_OF_HTTP = {
+    "http": (b"/health", b"application/problem+json"),
+    "mtconnect": (b"/probe", b"text/xml; charset=utf-8"),
+}
+"""What each answers, and how it refuses."""
+of_http = pytest.mark.parametrize("name", DOORS_OF_HTTP)
+
+
+def ask(name: str, head: bytes = b"") -> bytes:
+    return b"GET %b HTTP/1.1\r\nHost: localhost\r\n%b\r\n" % (DOORS_OF_HTTP[name][0], head)
+
+
+def short(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("polycnc.servers.asgi._connection.MOST_WAIT_S", SHORT_S)
+    monkeypatch.setattr("polycnc.servers.asgi._connection._LOOK_S", SHORT_S)
+
+
+@of_http
 @pytest.mark.parametrize(
     "begun",
     [
@@ -51,57 +70,99 @@ async def ended(reader: asyncio.StreamReader) -> bytes:
         "PUT /api/machines/m/programs/O1 HTTP/1.1\r\nHost: localhost\r\nContent-Length: 9\r\n\r\nO1",
     ],
 )
-def test_a_question_that_never_comes_ends_its_connection(begun: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("polycnc.servers.http._connection.MOST_WAIT_S", SHORT_S)
-    monkeypatch.setattr("polycnc.servers.http._connection._LOOK_S", SHORT_S)
+def test_a_question_that_never_comes_ends_its_connection(
+    name: str, begun: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    short(monkeypatch)
 
     async def visit(port: int) -> None:
         reader, writer = await asyncio.open_connection("127.0.0.1", port)
         writer.write(begun.encode())
-        assert await ended(reader) == b""
+        said = await ended(reader)
+        assert not said or (name == "mtconnect" and said.startswith(b"HTTP/1.1 405 "))
         writer.close()
 
-    with_door("http", "plain", Machinery("m", "mill3"), visit)
+    with_door(name, "plain", Machinery("m", "mill3"), visit)
 
 
-def test_beyond_the_number_of_connections_each_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("polycnc.servers.http._connection.MOST_CONNECTIONS", 3)
-    ask = b"GET /health HTTP/1.1\r\nHost: localhost\r\n\r\n"
+async def asking(loop: asyncio.AbstractEventLoop, line: socket.socket, question: bytes) -> None:
+    while True:
+        await loop.sock_sendall(line, question)
+        await asyncio.sleep(0)
+
+
+@pytest.mark.parametrize(("name", "path"), [("http", b"/openapi.json"), ("mtconnect", b"/probe")])
+def test_an_answer_that_is_never_read_ends_its_connection(
+    name: str, path: bytes, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    short(monkeypatch)
+
+    async def visit(port: int) -> None:
+        loop = asyncio.get_running_loop()
+        with socket.socket() as line:
+            line.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 4096)
+            line.setblocking(False)
+            await loop.sock_connect(line, ("127.0.0.1", port))
+            question = b"GET %b HTTP/1.1\r\nHost: localhost\r\n\r\n" % path
+            await loop.sock_sendall(line, question * 500)
+            with pytest.raises(ConnectionError):  # answers that nobody reads, until it is over
+                await asyncio.wait_for(asking(loop, line, question), 20)
+
+    with_door(name, "plain", Machinery("m", "mill3"), visit)
+
+
+@of_http
+def test_beyond_the_number_of_connections_each_is_told(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("polycnc.servers.asgi._connection.MOST_CONNECTIONS", 3)
 
     async def visit(port: int) -> None:
         lines = [await asyncio.open_connection("127.0.0.1", port) for _ in range(3)]
         for reader, writer in lines:
-            writer.write(ask)
+            writer.write(ask(name))
             assert (await reader.readline()).startswith(b"HTTP/1.1 200 ")
         reader, writer = await asyncio.open_connection("127.0.0.1", port)
-        writer.write(ask)
+        writer.write(ask(name))
         said = await ended(reader)
         assert said.startswith(b"HTTP/1.1 503 ")
-        assert b"application/problem+json" in said
+        assert DOORS_OF_HTTP[name][1] in said
         for _, other in (*lines, (reader, writer)):
             other.close()
         await asyncio.sleep(SHORT_S)
         reader, writer = await asyncio.open_connection("127.0.0.1", port)
-        writer.write(ask)
+        writer.write(ask(name))
         assert (await reader.readline()).startswith(b"HTTP/1.1 200 ")
         writer.close()
 
-    with_door("http", "plain", Machinery("m", "mill3"), visit)
+    with_door(name, "plain", Machinery("m", "mill3"), visit)
 
 
+@of_http
 @pytest.mark.parametrize(
     "sent", [b"\x16\x03\x01\x02\x00\x01", b"GET / SPDY/3\r\n\r\n", b"\r\n\r\n\x00\x00\xff\r\n\r\n"]
 )
-def test_what_is_no_http_is_refused_as_a_problem(sent: bytes) -> None:
+def test_what_is_no_http_is_refused_in_the_form_of_the_door(name: str, sent: bytes) -> None:
     async def visit(port: int) -> None:
         reader, writer = await asyncio.open_connection("127.0.0.1", port)
         writer.write(sent + b"\r\n\r\n")
         said = await ended(reader)
         assert said.startswith(b"HTTP/1.1 400 ")
-        assert b"application/problem+json" in said
+        assert DOORS_OF_HTTP[name][1] in said
         writer.close()
 
-    with_door("http", "plain", Machinery("m", "mill3"), visit)
+    with_door(name, "plain", Machinery("m", "mill3"), visit)
+
+
+@pytest.mark.parametrize("head", [b"Content-Length: 65537\r\n", b"Transfer-Encoding: chunked\r\n"])
+def test_a_body_that_an_agent_does_not_read_ends_its_connection_with_the_refusal(head: bytes) -> None:
+    async def visit(port: int) -> None:
+        reader, writer = await asyncio.open_connection("127.0.0.1", port)
+        writer.write(ask("mtconnect", head) + b"1\r\nx\r\n")
+        said = await ended(reader)
+        assert said.startswith(b"HTTP/1.1 400 ")
+        assert b"a body is not read here" in said
+        writer.close()
+
+    with_door("mtconnect", "plain", Machinery("m", "mill3"), visit)
 
 
 def test_a_download_that_stops_half_way_blocks_no_other_for_long(monkeypatch: pytest.MonkeyPatch) -> None:

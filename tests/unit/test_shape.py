@@ -38,7 +38,6 @@ EXCEPTIONS: dict[str, tuple[str, ...]] = {
         "kernel/_limits.py _give_way",
         "kernel/_profile.py plan_profile",
         "nc/fast/_plain_blocks.py _run",
-        "nc/fast/_plain_blocks.py _arc",
         "nc/text/_scan.py",
         "nc/text/_scan.py _scan_easy_blocks",
         "nc/text/_scan.py _scan_block",
@@ -46,18 +45,10 @@ EXCEPTIONS: dict[str, tuple[str, ...]] = {
         "runner/comparison/_distance.py in_one_order",
     ),
     "commands and readings of one control, a few lines each: what they do lies in its parts": (
-        "cnc/_path_feed.py PathFeed",
         "cnc/_program_run.py",
         "cnc/_program_run.py ProgramRun",
-        "cnc/_path_runner.py PathRunner",
-        "controllers/fanuc/device/_power_mate.py PowerMate",
     ),
-    "one method or branch for each statement of a language, which share what is known of the program": (
-        "nc/cpl/_program_reader.py _ProgramReader",
-        "nc/cpl/_values.py Values",
-        "nc/macro/_reader.py",
-        "nc/macro/_reader.py _Statements",
-    ),
+    "one method or branch for each statement of a language, which share what is known of the program": (),
     "one course of motion, in which each record changes what the next one means": (
         "post/macros/_rows.py write_rows",
         "post/output/_motion.py Motion",

@@ -163,7 +163,7 @@ def test_the_operators_signal_ends_the_move_of_a_power_mate() -> None:
     assert latched == pytest.approx(there / 1000.0, abs=0.011)
     assert latched < stood < latched + 1.5
     assert control.positions.read()[0].absolute == pytest.approx((stood + 2.0) * 1000.0, abs=1.0)
-    assert control.skip_positions[0] == pytest.approx(latched * 1000.0, abs=1.0)
+    assert control.skip.positions[0] == pytest.approx(latched * 1000.0, abs=1.0)
 
 
 def test_a_hold_while_a_skip_move_brakes_is_kept() -> None:

@@ -579,6 +579,37 @@ def test_what_is_too_large_or_no_text_is_refused(store: Store) -> None:
     assert (len(numbers), len(texts), len(store.history("alarms"))) == (0, 0, 0)
 
 
+@pytest.mark.parametrize("size", [400, 5000], ids=str)  # Python writes no number of over 4,300 digits
+@pytest.mark.parametrize("kind", [int, float, str, bytes, dict])
+def test_a_number_of_any_length_is_refused_in_a_sentence(store: Store, kind: type[Any], size: int) -> None:
+    area: Area[Any] = store.area("values", kind)
+    kept = kind() if kind is not float else 2.5
+    area.put(7, kept, {"unit": "mm"})
+    for number in (10**size, -(10**size)):
+        with pytest.raises(UsageError, match=r"over 64 bits|too large|is not of type") as refused:
+            area.put(7, number)
+        assert refused.value.hint
+        assert len(str(refused.value)) < 200
+        with pytest.raises(UsageError, match="cannot be a key"):
+            area.put(number, kept)
+    with pytest.raises(UsageError, match="not a JSON object"):
+        area.put(7, kept, {"unit": 10**5000})
+    assert dict(area) == {7: kept}
+    assert area.attributes(7) == {"unit": "mm"}
+
+
+@pytest.mark.parametrize("text", ["", "mm", '{"unit": ', "[3]", '"mm"', '{"size": ' + "9" * 5000 + "}"])
+def test_damaged_attributes_are_told_by_every_way_of_reading_them(store: Store, text: str) -> None:
+    area = store.area("values", float)
+    area.put(7, 2.5, {"unit": "mm"})
+    store.query("UPDATE item SET attributes = ?", (text,))
+    for read in (lambda: area.attributes(7), area.all_attributes):
+        with pytest.raises(StoreError, match="the store is damaged") as refused:
+            read()
+        assert refused.value.hint
+    assert area[7] == 2.5
+
+
 @pytest.mark.parametrize("name", ["a\0b", "n" * 5000])
 def test_a_name_that_no_file_can_have(tmp_path: Path, name: str) -> None:
     with pytest.raises(StoreError, match=r"cannot (use|write|read) '"):

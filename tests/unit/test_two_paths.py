@@ -46,7 +46,7 @@ def queue(state: KernelState, g: int) -> None:
     for tag, (x, y) in enumerate(ENDS[g], 1):
         end = np.array([x, y, 0.0, 0.0])
         assert append_line(state.seg, state.paths, g, state.limits, end, FEEDS[g], 0, tag)
-    append_wait(state.seg, state.paths, g, 0.04, -1, 9)
+    append_wait(state.seg, state.paths, g, 0.04, -1, 9, 0)
     assert free_slots(state.paths, g) == 6 - len(ENDS[g]) - 1
     state.paths.row[g]["closed"] = 1
     prepare_path(state.seg, state.paths, g, state.limits, CYCLE_S, state.work)

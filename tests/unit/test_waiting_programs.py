@@ -108,7 +108,7 @@ def test_a_cpl_program_that_waits_is_asked_once_a_cycle(tmp_path: Path) -> None:
         made = Pnc(tmp_path)
         made.select_program("main.npg")
         made.cycle_start()
-        assert made.advance(300) == 300
+        assert made.advance(30) == 30
         assert made.run_state(1) is RunState.ACTIVE, (text, made.status().alarms)
         made.close()
 

@@ -16,6 +16,7 @@ from polycnc.cli import (
     _conformance,
     _debug,
     _focas,
+    _lsp,
     _machine,
     _mtconnect,
     _post,
@@ -69,6 +70,7 @@ app.command("debug", short_help="Execute a program block by block and look at it
     guarded(_debug.debug_command)
 )
 app.command("check", short_help="Report every error of part programs.")(guarded(_check.check_command))
+app.command("lsp", short_help="Serve an editor: errors and codes while you type.")(guarded(_lsp.lsp_command))
 app.command("post", short_help="Turn a tool path into a program for a control.")(guarded(_post.post_command))
 app.command("machine", short_help="Show a machine's axes and limits.")(guarded(_machine.machine_command))
 app.command("serve", short_help="Serve a simulated control to clients on the network.")(

@@ -80,7 +80,8 @@ def _report(result: PostResult) -> None:
     tell(f"path       feed {summary.feed_mm:,.3f} mm, rapid {summary.rapid_mm:,.3f} mm")
     for remark in summary.remarks:
         times = f" ({remark.count} times)" if remark.count > 1 else ""
-        tell(f"remark     line {remark.line}: {remark.text}{times}")
+        place = f"line {remark.line}: " if remark.line else ""
+        tell(f"remark     {place}{remark.text}{times}")
     if result.verification is not None:
         _report_proof(result.verification, tell)
     if result.output is not None:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import contextlib
 import ipaddress
 import os
 import sys
@@ -16,6 +15,7 @@ from polycnc.cli._output import say, say_error
 if TYPE_CHECKING:
     from polycnc.servers.setup import Plan
 
+_MOST_END_S = 0.85  # after a signal
 _MOST_LINES = 20  # of doors that are named one by one
 
 
@@ -44,6 +44,7 @@ def serve_command(
     scenario: _options.Scenario = None,
     mtconnect_version: _options.MTConnectVersion = "2.7",
     opcua_nodesets: _options.NodeSets = None,
+    part: _options.Part = None,
 ) -> None:
     """Serve simulated machines that run, until Ctrl-C ends it."""
     from polycnc.servers.setup import Flags, plan_of
@@ -70,22 +71,12 @@ def serve_command(
             scenario=scenario,
             mtconnect=mtconnect_version,
             node_sets=opcua_nodesets,
+            part=part,
         )
     )
-    _run(plan)
-
-
-def _run(plan: Plan) -> None:
-    """Serve until a signal ends it."""
     import asyncio
 
-    try:
-        asyncio.run(serve_plan(plan))
-    except KeyboardInterrupt:
-        say_error("interrupted")
-        _leave(INTERRUPTED)
-    except SystemExit as ended:
-        _leave(ended.code if isinstance(ended.code, int) else 1)
+    asyncio.run(serve_plan(plan, is_part=part is not None) if plan.processes == 1 else serve_fleet(plan))
 
 
 def _leave(status: int) -> NoReturn:
@@ -144,15 +135,40 @@ def _addresses(first: str, count: int) -> list[str]:
     return [str(start + k) for k in range(count)]
 
 
-async def serve_plan(plan: Plan) -> None:
-    """Serve what a plan says until a signal ends it."""
+async def serve_fleet(plan: Plan) -> None:
+    """Let several processes serve what a plan says until a signal ends them, or one of them has ended."""
+    import asyncio
+    import signal
+
+    from polycnc.servers.fleets import Fleet, FleetError, this_command
+
+    ended = _end_on_signals(signal.SIGTERM, signal.SIGINT)
+    plan.log.close()
+    fleet = Fleet(this_command(), plan.processes, _say_line, plan.metrics)
+    try:
+        await fleet.run()
+    except asyncio.CancelledError:
+        if not ended:
+            raise
+    except FleetError as error:
+        await fleet.close()
+        say_error(f"{error.what}\n{error.hint}")
+        _leave(error.status)
+    finally:
+        await fleet.close()
+    if ended:
+        _leave_after(ended[0])
+
+
+async def serve_plan(plan: Plan, *, is_part: bool = False) -> None:
+    """Serve what a plan says until a signal ends it; `is_part`: as one of several processes."""
     import asyncio
     import signal
 
     from polycnc import runner
     from polycnc.servers.process import Serving
 
-    ended = _end_on_signal(signal.SIGTERM)
+    ended = _end_on_signals(signal.SIGTERM, signal.SIGINT)
     serving = Serving(runner.WallClock(), plan.log, _Late().say, say_error)
     try:
         for why in plan.lasting:
@@ -160,32 +176,71 @@ async def serve_plan(plan: Plan) -> None:
         await serving.open(plan.machines, plan.shared)
         for warning in plan.warnings:
             say_error(warning)
-        _say_doors([(name, door.said) for name, door in serving.doors])
+        if is_part:
+            from polycnc.servers.fleets import Part
+
+            part = Part(sys.stdout, lambda: signal.raise_signal(signal.SIGTERM))
+            part.tell_doors(serving.doors_of_machines())
+        else:
+            _say_doors([(name, door.said) for name, door in serving.doors])
         await asyncio.sleep(0)  # whoever wants it to end already
         await serving.begin()
+        if is_part:
+            part.begin(serving.machines)
         await serving.run()
     except asyncio.CancelledError:
-        if ended:
-            sys.exit(128 + ended[0])
-        raise
+        if not ended:
+            raise
     finally:
         await serving.close()
+    if ended:
+        _leave_after(ended[0])
 
 
-def _end_on_signal(number: int) -> list[int]:
-    """Let a signal end what runs where it waits, never in the middle of something; return the list that tells of it."""
+def _leave_after(number: int) -> NoReturn:
+    """End the process after a signal."""
+    if _status_of(number) == INTERRUPTED:
+        say_error("interrupted")
+    _leave(_status_of(number))
+
+
+def _say_line(line: str) -> None:
+    say(line)
+    sys.stdout.flush()
+
+
+def _status_of(number: int) -> int:
+    """Return the exit status after a signal."""
+    import signal
+
+    return INTERRUPTED if number == signal.SIGINT else 128 + number
+
+
+def _end_on_signals(*numbers: int) -> list[int]:
+    """Let signals end what runs where it waits, never in the middle of something; return the list that tells of them.
+
+    What does not wait in time (a program that is being compiled, a computer that has no time) is broken off: what was
+    acknowledged is kept already.
+    """
     import asyncio
+    import signal
+    import threading
 
-    task, came = asyncio.current_task(), list[int]()
+    task, loop, came = asyncio.current_task(), asyncio.get_running_loop(), list[int]()
     assert task is not None
+    cancel = task.cancel
 
-    def end() -> None:
-        if not came:  # who asks twice does not break off the closing
-            task.cancel()
+    def end(number: int, _: object) -> None:
         came.append(number)
+        if len(came) > 1:  # who asks twice does not break off the closing
+            return
+        loop.call_soon_threadsafe(cancel)
+        late = threading.Timer(_MOST_END_S, os._exit, [_status_of(number)])
+        late.daemon = True
+        late.start()
 
-    with contextlib.suppress(NotImplementedError):  # Windows: the process ends as others do
-        asyncio.get_running_loop().add_signal_handler(number, end)
+    for number in numbers:
+        signal.signal(number, end)
     return came
 
 

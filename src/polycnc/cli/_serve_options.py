@@ -81,6 +81,9 @@ Faults: TypeAlias = Annotated[
     Path | None,
     typer.Option(help="A script of what goes wrong, and when: connections, alarms, ...", metavar="FILE"),
 ]
+Part: TypeAlias = Annotated[
+    str | None, typer.Option(hidden=True, help="Which process of a fleet this is.", metavar="K/N")
+]
 MTConnectVersion: TypeAlias = Annotated[
     str, typer.Option(help="What clients of mtconnect and shdr see: 2.7, 2.2, 1.8 or 1.3.", metavar="VERSION")
 ]

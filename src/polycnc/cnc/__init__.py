@@ -5,6 +5,7 @@ Running a program needs no control: what belongs to one is loaded when it is fir
 
 from typing import TYPE_CHECKING
 
+from polycnc.cnc._passed_events import OnPassed, Passed, PassedRun, let_pass
 from polycnc.cnc._program_run import ProgramRun
 from polycnc.cnc._run_snapshot import RunSnapshot
 from polycnc.cnc._run_state import RunAlarm, RunOptions, RunState
@@ -62,56 +63,6 @@ if TYPE_CHECKING:
     from polycnc.cnc._tables import OffsetTable, Tool, ToolTable
     from polycnc.cnc._timers import PartCounter, Parts, Timer, Timers, TimersState
 
-_LATER = {
-    "_alarms": (
-        "ALARMS",
-        "Alarm",
-        "AlarmKind",
-        "AlarmList",
-        "AlarmRow",
-        "AlarmTable",
-        "ClearedBy",
-        "OperatorMessage",
-        "OperatorMessages",
-        "PastAlarm",
-    ),
-    "_control": ("Control",),
-    "_control_time": ("ControlEvent",),
-    "_control_channel": ("ControlChannel",),
-    "_control_data": (
-        "AfterManual",
-        "ChannelData",
-        "ControlData",
-        "Mode",
-        "OnModeChange",
-        "Overrides",
-        "Search",
-        "Switches",
-    ),
-    "_control_snapshot": ("ControlSnapshot",),
-    "_inventory": ("AxisLimits", "Identity", "Inventory", "PastMessage", "SetBreakpoint"),
-    "_manual": ("AxisMotion", "Handwheel", "ManualData", "ManualKind", "ManualMotion", "ManualState"),
-    "_open_program": ("OpenProgram",),
-    "_plc": ("Answer", "Function", "PlcModel", "PlcState", "Request", "Script"),
-    "_program_edit": ("ProgramEdit",),
-    "_program_memory": ("Found", "MemoryData", "ProgramEntry", "ProgramMemory", "first_comment"),
-    "_refusal": ("ControlError", "Refusal"),
-    "_spindle": ("Spindle", "SpindleMotion", "SpindleState"),
-    "_status": (
-        "AxisStatus",
-        "ChannelStatus",
-        "Emergency",
-        "Feed",
-        "Motion",
-        "Status",
-        "ToolInUse",
-        "WorkOffset",
-    ),
-    "_stopping": ("PROGRAM_MESSAGE",),
-    "_tables": ("OffsetTable", "Tool", "ToolTable"),
-    "_timers": ("PartCounter", "Parts", "Timer", "Timers", "TimersState"),
-}
-
 __all__ = [
     "ALARMS",
     "PROGRAM_MESSAGE",
@@ -151,12 +102,15 @@ __all__ = [
     "Motion",
     "OffsetTable",
     "OnModeChange",
+    "OnPassed",
     "OpenProgram",
     "OperatorMessage",
     "OperatorMessages",
     "Overrides",
     "PartCounter",
     "Parts",
+    "Passed",
+    "PassedRun",
     "PastAlarm",
     "PastMessage",
     "PlcModel",
@@ -189,6 +143,7 @@ __all__ = [
     "ToolTime",
     "WorkOffset",
     "first_comment",
+    "let_pass",
 ]
 
-__getattr__ = names_on_demand(__name__, _LATER)
+__getattr__ = names_on_demand(__name__)

@@ -9,7 +9,7 @@ from types import MappingProxyType
 from typing import TypeAlias
 
 from polycnc.cnc._refusal import ControlError, Refusal
-from polycnc.errors import ProgramError
+from polycnc.errors import ProgramError, shown
 from polycnc.machine import Clock, Store
 
 _ALARMS = "cnc.alarm_history"
@@ -181,22 +181,23 @@ class AlarmList:
         """Put an alarm on and note it in the history; one that is on already stays as it is.
 
         It stops the channel of its axis, else `channel`, all of them if that is None.
+
+        Raises:
+            ControlError: There is no alarm of this name; nothing has changed.
         """
         channel = self._channel(axis, channel)
         if known := self._active.get((name, axis, channel)):
             return known
-        row = self._table[name]
+        row = self._table.get(name)
+        if row is None:
+            raise ControlError(
+                Refusal.NOT_FOUND, f"there is no alarm {shown(name)}", hint="Use one of the control's table."
+            )
         text = row.text.format(axis=axis, detail=detail)
         alarm = Alarm(name, row.number, row.kind, text, axis, self._clock.cycles, row.cleared_by, channel)
         self.last_time = self._clock.now.isoformat()
         self._history.append(
-            {
-                "number": row.number,
-                "kind": row.kind.value,
-                "text": text,
-                "axis": axis,
-                "time": self.last_time,
-            }
+            {"number": row.number, "kind": row.kind.value, "text": text, "axis": axis, "time": self.last_time}
         )
         self._history.trim(self._keep)
         self.revision += 1

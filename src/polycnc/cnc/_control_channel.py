@@ -9,13 +9,7 @@ from polycnc.cnc._block_search import block_line
 from polycnc.cnc._channel_axes import ChannelAxes
 from polycnc.cnc._control_data import AfterManual, ChannelData, Mode, Overrides, Search, Switches
 from polycnc.cnc._manual import ManualMotion
-from polycnc.cnc._path_blocks import (
-    find_block,
-    next_block,
-    prepared_block,
-    stands_ready,
-    unless_refused,
-)
+from polycnc.cnc._path_blocks import find_block, next_block, prepared_block, stands_ready, unless_refused
 from polycnc.cnc._program_run import ProgramRun
 from polycnc.cnc._refusal import ControlError, Refusal
 from polycnc.cnc._run_making import RunMaker
@@ -23,11 +17,7 @@ from polycnc.cnc._run_state import INTERRUPTED, RunState
 from polycnc.cnc._stops import Breakpoint, Step
 from polycnc.errors import UsageError
 from polycnc.machine import Machine, MachineConfig
-from polycnc.nc import (
-    BlockRecord,
-    Dialect,
-    ProgramText,
-)
+from polycnc.nc import BlockRecord, Dialect, ProgramText
 
 
 class ControlChannel:
@@ -38,12 +28,7 @@ class ControlChannel:
     """
 
     def __init__(
-        self,
-        machine: Machine,
-        path: int,
-        data: ChannelData,
-        manual: ManualMotion,
-        runs: RunMaker,
+        self, machine: Machine, path: int, data: ChannelData, manual: ManualMotion, runs: RunMaker
     ) -> None:
         self.path = path
         self.skip_signal = False

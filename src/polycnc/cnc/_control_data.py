@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass, field
 from enum import StrEnum
 
@@ -10,8 +9,9 @@ from polycnc.cnc._alarms import ALARMS, AlarmTable
 from polycnc.cnc._manual_data import ManualData
 from polycnc.cnc._program_memory import MemoryData
 from polycnc.cnc._refusal import ControlError, Refusal
-from polycnc.errors import UsageError
+from polycnc.errors import UsageError, shown
 from polycnc.machine import LEAST_OVERRIDE
+from polycnc.units import is_finite
 
 
 class Mode(StrEnum):
@@ -140,7 +140,7 @@ class Overrides:
         if self.rapid not in data.rapid_overrides:
             steps = ", ".join(f"{step:g}" for step in data.rapid_overrides)
             raise _refused("rapid", self.rapid, f"The steps are {steps}; 1 is 100 %.")
-        if not (math.isfinite(self.spindle) and low <= self.spindle <= high):
+        if not (is_finite(self.spindle) and low <= self.spindle <= high):
             raise _refused("spindle", self.spindle, f"Give {low:g} to {high:g}; 1 is 100 %.")
         return self
 
@@ -157,4 +157,4 @@ class Switches:
 
 
 def _refused(which: str, value: float, hint: str) -> ControlError:
-    return ControlError(Refusal.DATA, f"a {which} override of {value} is out of range", hint=hint)
+    return ControlError(Refusal.DATA, f"a {which} override of {shown(value)} is out of range", hint=hint)

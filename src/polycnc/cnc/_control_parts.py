@@ -17,6 +17,7 @@ from polycnc.cnc._spindle import Spindle
 from polycnc.cnc._status import Emergency
 from polycnc.cnc._tables import OffsetTable, ToolTable
 from polycnc.cnc._timers import PartCounter, Timers
+from polycnc.errors import shown
 from polycnc.machine import Clock, Machine, MachineConfig
 from polycnc.nc import Dialect
 
@@ -57,7 +58,9 @@ class ControlParts:
         """
         if not 0 <= number < len(self.channels):
             raise ControlError(
-                Refusal.DATA, f"there is no channel {number}", hint=f"Give 0 to {len(self.channels) - 1}."
+                Refusal.DATA,
+                f"there is no channel {shown(number)}",
+                hint=f"Give 0 to {len(self.channels) - 1}.",
             )
         return self.channels[number]
 

@@ -95,10 +95,7 @@ class ControlTime:
         reasons = int(ManualMotion.REASONS | Reason.FOLLOWING_ERROR)
         passed = self._of.machine.advance(cycles, until=int(row["mask"]) | reasons)
         self._of.timers.count(
-            passed,
-            operating=RunState.ACTIVE in states,
-            cut_s=self._cut_s(),
-            tool=self._tool(),
+            passed, operating=RunState.ACTIVE in states, cut_s=self._cut_s(), tool=self._tool()
         )
         self._look(passed, alarms)
         self._of.clock.changes += 1  # where no cycle has passed as well

@@ -7,7 +7,6 @@ switch everything brakes, and the axis can only leave it.
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterable
 
 import numpy as np
@@ -22,6 +21,7 @@ from polycnc.cnc._reference_steps import Step, Until, reference_steps
 from polycnc.cnc._refusal import ControlError, Refusal
 from polycnc.kernel import LIMIT_HIGH, LIMIT_LOW, MAIN, REFERENCE
 from polycnc.machine import AxisConfig, Machine, Reason
+from polycnc.units import is_finite
 
 ANY_CYCLES = 1 << 40
 _SIDE = {DOWN: "low", UP: "high"}
@@ -128,10 +128,10 @@ class ManualMotion:
             AxisMotion(
                 ManualKind.JOG,
                 direction,
-                end if math.isfinite(end) else None,
+                end if is_finite(end) else None,
                 self._profiles.axes[i].vmax if rapid else self._profiles.jog_speed(i),
                 rapid,
-                beyond=math.isfinite(end),
+                beyond=is_finite(end),
             ),
         )
 
@@ -172,7 +172,7 @@ class ManualMotion:
         moving = self.motions[i]
         start = self._profiles.position(i) if moving.target is None or moving.stopping else moving.target
         target = start + pulses * size
-        if not math.isfinite(target):
+        if not is_finite(target):
             raise ControlError(Refusal.DATA, f"{pulses} pulses are too many", hint="Turn the handwheel less.")
         check_way(self._profiles, i, UP if pulses > 0 else DOWN)
         self.wheel = Handwheel(axis, size)
@@ -188,9 +188,7 @@ class ManualMotion:
         """
         i = self._index(axis)
         check_free(self._machine, self._profiles, i)
-        if not (
-            math.isfinite(target) and self._profiles.soft(i, DOWN) <= target <= self._profiles.soft(i, UP)
-        ):
+        if not (is_finite(target) and self._profiles.soft(i, DOWN) <= target <= self._profiles.soft(i, UP)):
             raise ControlError(
                 Refusal.TRAVEL,
                 f"axis {axis} cannot go to {target:g} {self._profiles.axes[i].unit}",

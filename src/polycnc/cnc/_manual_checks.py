@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import math
-
 from polycnc.cnc._manual_data import ManualKind
 from polycnc.cnc._manual_profiles import DOWN, UP, ManualProfiles
 from polycnc.cnc._refusal import ControlError, Refusal
+from polycnc.errors import shown
 from polycnc.kernel import POINT_TO_POINT
 from polycnc.machine import Machine
+from polycnc.units import is_finite
 
 
 def check_way(profiles: ManualProfiles, i: int, direction: int) -> None:
@@ -45,12 +45,14 @@ def check_free(
 def check_direction(direction: int) -> None:
     """Refuse what is no direction."""
     if direction not in (DOWN, UP):
-        raise ControlError(Refusal.DATA, f"{direction} is no direction", hint="Give 1 or -1.")
+        raise ControlError(Refusal.DATA, f"{shown(direction)} is no direction", hint="Give 1 or -1.")
 
 
 def check_size(size: float) -> None:
     """Refuse what is no size of an increment."""
-    if not (math.isfinite(size) and size > 0.0):
+    if not (is_finite(size) and size > 0.0):
         raise ControlError(
-            Refusal.DATA, f"an increment of {size} is none", hint="Give a size above 0, in mm or degree."
+            Refusal.DATA,
+            f"an increment of {shown(size)} is none",
+            hint="Give a size above 0, in mm or degree.",
         )

@@ -8,6 +8,8 @@ from polycnc.cnc._control_data import Mode
 from polycnc.cnc._control_parts import ControlParts
 from polycnc.cnc._refusal import ControlError, Refusal
 from polycnc.cnc._status import Emergency
+from polycnc.errors import shown
+from polycnc.units import is_finite
 
 
 class ManualCommands:
@@ -65,9 +67,11 @@ class ManualCommands:
             ControlError: No such axis, or a position that is not finite.
         """
         names = self._of.machine.config.axis_names
-        if axis not in names or position - position != 0.0:
+        if axis not in names or not is_finite(position):
             raise ControlError(
-                Refusal.DATA, f"axis {axis} cannot be at {position}", hint=f"The axes are {', '.join(names)}."
+                Refusal.DATA,
+                f"axis {axis} cannot be at {shown(position)}",
+                hint=f"The axes are {', '.join(names)}.",
             )
         index = names.index(axis)
         self._of.relative_zero[index] = float(self._of.machine.state.servo.actual[index]) - position

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from enum import StrEnum
 
 from polycnc.cnc._reference_steps import Step
-from polycnc.errors import UsageError
+from polycnc.errors import UsageError, shown
+from polycnc.units import is_finite
 
 
 class ManualKind(StrEnum):
@@ -42,8 +42,10 @@ class ManualData:
 
     def __post_init__(self) -> None:
         for speed in (self.jog_share, self.reference_share, self.creep_share, *self.jog_speeds.values()):
-            if not (math.isfinite(speed) and speed > 0.0):
-                raise UsageError(f"a manual speed of {speed} moves nothing", hint="Give a speed above 0.")
+            if not (is_finite(speed) and speed > 0.0):
+                raise UsageError(
+                    f"a manual speed of {shown(speed)} moves nothing", hint="Give a speed above 0."
+                )
 
 
 @dataclass(frozen=True, slots=True)

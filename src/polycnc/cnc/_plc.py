@@ -6,7 +6,6 @@ own time, an alarm instead of an answer, or no answer until somebody calls `answ
 
 from __future__ import annotations
 
-import math
 import re
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
@@ -14,7 +13,9 @@ from enum import StrEnum
 from typing import TypeAlias
 
 from polycnc.cnc._refusal import ControlError, Refusal
+from polycnc.errors import shown
 from polycnc.machine import Clock, TimesConfig
+from polycnc.units import is_finite
 
 _FUNCTION = re.compile(r"([MSTB])(\d+(?:\.\d*)?)")
 
@@ -214,9 +215,9 @@ def _check(function: Function, number: int | None, after_s: float | None) -> Non
         raise ControlError(
             Refusal.DATA, f"{function}{number} is not an auxiliary function", hint="Numbers start at 0."
         )
-    if after_s is not None and not (math.isfinite(after_s) and after_s >= 0.0):
+    if after_s is not None and not (is_finite(after_s) and after_s >= 0.0):
         raise ControlError(
             Refusal.DATA,
-            f"{function}{'' if number is None else number} cannot be answered after {after_s} s",
+            f"{function}{'' if number is None else number} cannot be answered after {shown(after_s)} s",
             hint="Give a time from 0 s, or None for an answer by hand.",
         )

@@ -19,6 +19,7 @@ from polycnc.cnc._refusal import ControlError, Refusal
 from polycnc.cnc._status import Emergency
 from polycnc.cnc._stopping import PROGRAM_MESSAGE, break_off, stop_for
 from polycnc.cnc._stops import Step
+from polycnc.errors import shown
 from polycnc.nc import ROOM_BYTES, IncomingText, ProgramText
 
 _PROGRAM_MODES = frozenset({Mode.AUTO, Mode.MDI})
@@ -79,7 +80,7 @@ class ProgramCommands:
             )
         if room_bytes < 1:
             raise ControlError(
-                Refusal.DATA, f"a room of {room_bytes} bytes takes nothing", hint="Give 1 or more."
+                Refusal.DATA, f"a room of {shown(room_bytes)} bytes takes nothing", hint="Give 1 or more."
             )
         text = IncomingText(name, room_bytes)
         chosen.check_rest()
@@ -220,7 +221,14 @@ class ProgramCommands:
         """Put an alarm on from outside: everything brakes, and only a reset helps; one that is on stays as it is.
 
         With an axis it is an alarm of the channel that the axis belongs to.
+
+        Raises:
+            ControlError: There is no such alarm or axis.
         """
+        if axis is not None and axis not in (names := self._of.machine.config.axis_names):
+            raise ControlError(
+                Refusal.DATA, f"there is no axis {shown(axis)}", hint=f"The axes are {', '.join(names)}."
+            )
         if self._of.alarms.has(name, axis):
             return self._of.alarms.put(name, axis=axis)
         alarm = self._of.alarms.put(name, axis=axis, detail=detail)

@@ -15,14 +15,7 @@ from polycnc.cnc._stops import Step
 from polycnc.cnc._tool_times import ToolTime, ToolTimes
 from polycnc.errors import UsageError
 from polycnc.machine import Snapshot, SnapshotError, Values
-from polycnc.nc import (
-    CHANNEL_CLASSES,
-    ChannelSnapshot,
-    Language,
-    LastingLanguage,
-    ProgramText,
-    Texts,
-)
+from polycnc.nc import CHANNEL_CLASSES, ChannelSnapshot, Language, LastingLanguage, ProgramText, Texts
 
 DEVICE = "program run"
 FindText: TypeAlias = Callable[[str], ProgramText | None]

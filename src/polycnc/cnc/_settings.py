@@ -11,6 +11,7 @@ from polycnc.cnc._control_data import Mode, OnModeChange
 from polycnc.cnc._control_parts import ControlParts, live_config
 from polycnc.cnc._refusal import ControlError, Refusal
 from polycnc.cnc._stopping import break_off
+from polycnc.errors import shown
 from polycnc.machine import AnyAxis
 from polycnc.nc import Dialect, language_for
 
@@ -149,7 +150,9 @@ class Settings:
         }
         if block_delete is not None and not block_delete <= frozenset(range(1, 10)):
             raise ControlError(
-                Refusal.DATA, f"{sorted(block_delete)} are not skip marks", hint="Give numbers from 1 to 9."
+                Refusal.DATA,
+                f"{shown(sorted(block_delete))} are not skip marks",
+                hint="Give numbers from 1 to 9.",
             )
         if dry_run and not self._of.data.dry_run_mm_min > 0.0:
             raise ControlError(

@@ -12,7 +12,9 @@ from typing import NamedTuple
 
 from polycnc.cnc._frozen import row
 from polycnc.cnc._refusal import ControlError, Refusal
+from polycnc.errors import shown
 from polycnc.machine import Clock, MachineConfig
+from polycnc.units import is_finite
 
 _DEG_S_PER_RPM = 6.0
 _AT_ONCE = math.inf
@@ -79,15 +81,17 @@ class Spindle:
         Raises:
             ControlError: A speed that is negative or not finite, a direction other than -1, 0 and 1.
         """
-        if rpm is not None and not (math.isfinite(rpm) and rpm >= 0.0):
+        if rpm is not None and not (is_finite(rpm) and rpm >= 0.0):
             raise ControlError(
                 Refusal.DATA,
-                f"the spindle cannot turn at {rpm} rpm",
+                f"the spindle cannot turn at {shown(rpm)} rpm",
                 hint="Give a speed from 0; M4 turns back.",
             )
         if direction is not None and direction not in (-1, 0, 1):
             raise ControlError(
-                Refusal.DATA, f"{direction} is no direction of a spindle", hint="1 is M3, -1 is M4, 0 is M5."
+                Refusal.DATA,
+                f"{shown(direction)} is no direction of a spindle",
+                hint="1 is M3, -1 is M4, 0 is M5.",
             )
         motion = self._motion
         wanted = replace(
@@ -104,10 +108,10 @@ class Spindle:
         Raises:
             ControlError: Not a number from 0 to 2.
         """
-        if not (math.isfinite(override) and 0.0 <= override <= 2.0):
+        if not (is_finite(override) and 0.0 <= override <= 2.0):
             raise ControlError(
                 Refusal.DATA,
-                f"a spindle override of {override} is out of range",
+                f"a spindle override of {shown(override)} is out of range",
                 hint="Give 0 to 2; 1 is 100 %.",
             )
         if override != self._motion.override:
@@ -120,9 +124,11 @@ class Spindle:
             ControlError: The angle is not finite.
         """
         target = self._config.orientation_deg if angle_deg is None else angle_deg
-        if not math.isfinite(target):
+        if not is_finite(target):
             raise ControlError(
-                Refusal.DATA, f"the spindle cannot stop at {target} degree", hint="Give an angle in degree."
+                Refusal.DATA,
+                f"the spindle cannot stop at {shown(target)} degree",
+                hint="Give an angle in degree.",
             )
         self._clock.changes += 1
         now = self._now()

@@ -16,15 +16,7 @@ from polycnc.cnc._control_parts import ControlParts
 from polycnc.cnc._frozen import FrozenDict
 from polycnc.cnc._manual_data import AxisMotion, ManualKind
 from polycnc.cnc._run_state import RunState
-from polycnc.cnc._status import (
-    AxisStatus,
-    ChannelStatus,
-    Feed,
-    Motion,
-    Status,
-    ToolInUse,
-    WorkOffset,
-)
+from polycnc.cnc._status import AxisStatus, ChannelStatus, Feed, Motion, Status, ToolInUse, WorkOffset
 from polycnc.kernel import OTHER_SOURCE, RAPID, RUNNING, WAIT, planned_s
 from polycnc.machine import MachineConfig
 from polycnc.nc import BlockRecord, Group

@@ -6,7 +6,6 @@ Both are mappings with the shape of the machine file's tables, so whoever prepar
 
 from __future__ import annotations
 
-import math
 import re
 from collections.abc import Iterator, Mapping
 from dataclasses import asdict, dataclass, fields, replace
@@ -14,7 +13,9 @@ from types import MappingProxyType
 from typing import Any
 
 from polycnc.cnc._refusal import ControlError, Refusal
+from polycnc.errors import shown
 from polycnc.machine import MachineConfig, Store
+from polycnc.units import is_finite, is_number
 
 _TOOLS = "cnc.tools"
 _OFFSETS = "cnc.offsets"
@@ -151,7 +152,7 @@ class OffsetTable(Mapping[str, Mapping[str, float]]):
                 )
             _check_number(f"{name} {axis}", value)
             total = (row.get(axis, 0.0) if add else 0.0) + value
-            if not math.isfinite(total):
+            if not is_finite(total):
                 raise ControlError(
                     Refusal.DATA,
                     f"{name} {axis} cannot be {total}",
@@ -165,8 +166,8 @@ class OffsetTable(Mapping[str, Mapping[str, float]]):
 
 def _check_number(name: str, value: object) -> float:
     """Return a value that is a finite number; refuse another."""
-    if isinstance(value, bool) or not isinstance(value, (int, float)) or not math.isfinite(value):
-        raise ControlError(Refusal.DATA, f"{name} cannot be {value!r}", hint="Give a finite number.")
+    if not is_number(value):
+        raise ControlError(Refusal.DATA, f"{name} cannot be {shown(value)}", hint="Give a finite number.")
     return value
 
 
@@ -174,7 +175,7 @@ def _check_field(name: str, value: object) -> None:
     """Refuse a value that a field of a tool cannot have."""
     if name == "description":
         if not isinstance(value, str):
-            raise ControlError(Refusal.DATA, f"a description is text, not {value!r}", hint="Give text.")
+            raise ControlError(Refusal.DATA, f"a description is text, not {shown(value)}", hint="Give text.")
         return
     number = _check_number(name, value)
     if name == "radius_mm" and number < 0.0:

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 from enum import StrEnum
 
 from polycnc.cnc._refusal import ControlError, Refusal
+from polycnc.errors import shown
 from polycnc.machine import Clock, Store
+from polycnc.units import is_finite
 
 _TIMERS = "cnc.timers"
 _TOOLS = "cnc.tool_times"
@@ -219,6 +220,8 @@ class PartCounter:
 
 
 def _checked_s(time_s: float) -> float:
-    if not (math.isfinite(time_s) and time_s >= 0.0):
-        raise ControlError(Refusal.DATA, f"a timer cannot show {time_s} s", hint="Give a time from 0 s.")
+    if not (is_finite(time_s) and time_s >= 0.0):
+        raise ControlError(
+            Refusal.DATA, f"a timer cannot show {shown(time_s)} s", hint="Give a time from 0 s."
+        )
     return time_s

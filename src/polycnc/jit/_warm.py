@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator
-from typing import Any, get_type_hints
+from typing import Annotated, Any, get_type_hints
 
 import numba
 import numpy as np
@@ -19,6 +19,7 @@ _PLAIN: dict[object, object] = {
     npt.NDArray[np.float64]: np.zeros(2),
     npt.NDArray[np.int64]: np.zeros(2, np.int64),
     npt.NDArray[np.uint8]: np.zeros(2, np.uint8),
+    Annotated[npt.NDArray[np.float64], 2]: np.zeros((2, 2)),  # of as many dimensions as it says
 }
 
 
@@ -52,7 +53,7 @@ def compile_entries(package: str, states: Iterable[object], progress: Callable[[
 
 
 def _signature(function: Any, types: dict[object, object]) -> tuple[object, ...]:
-    hints = get_type_hints(function)
+    hints = get_type_hints(function, include_extras=True)
     hints.pop("return", None)
     unknown = [hint for hint in hints.values() if hint not in types]
     if unknown:

@@ -29,10 +29,10 @@ from polycnc.kernel._switches import SOFT_INSIDE, SWITCHES_PER_AXIS, soft_limit,
 
 
 @compiled
-def _settle_path(state: KernelState, g: int) -> None:
-    """Report what stands where path `g` rests: an event, or nothing more to come."""
+def _settle_path(state: KernelState, g: int, now: int) -> None:
+    """Report what stands where path `g` rests in cycle `now`: an event, or nothing more to come."""
     row = state.paths.row[g]
-    while settle(state.seg, state.paths, g) == EVENT:
+    while settle(state.seg, state.paths, g, now) == EVENT:
         state.clock[0]["raised"] |= PATH_EVENT
         if state.clock[0]["mask"] & PATH_EVENT:
             break
@@ -47,7 +47,7 @@ def _run_paths(state: KernelState, dt: float) -> None:
         if row["state"] == IDLE:
             continue
         if path_cycle(state.seg, state.paths, g, dt) == RESTED:
-            _settle_path(state, g)
+            _settle_path(state, g, state.clock[0]["cycle"] + 1)
         if row["closed"] == 0 and row["planned"] - row["head"] <= row["low_water"]:
             state.clock[0]["raised"] |= QUEUE_LOW
 
@@ -147,8 +147,9 @@ def advance(state: KernelState, cycles: int) -> int:
     for g in range(state.paths.row.shape[0]):
         row = state.paths.row[g]
         row["event"] = -1
+        row["passed_at"] = clock["cycle"] if row["passes"] != 0 else -1
         if row["state"] == READY and row["head"] < row["prepared"] and not clock["raised"] & PATH_EVENT:
-            _settle_path(state, g)
+            _settle_path(state, g, clock["cycle"])
     if clock["raised"] & clock["mask"]:
         return 0
     for done in range(cycles):
@@ -164,7 +165,7 @@ def skip(state: KernelState, g: int, until: int) -> int:
     The clock goes on as if all cycles had been run; servos are taken as ideal and nothing is recorded.
     """
     clock, paths = state.clock[0], state.paths
-    cycles = int(skip_path(state.seg, paths, g, clock["dt"], until))
+    cycles = int(skip_path(state.seg, paths, g, clock["dt"], until, clock["cycle"]))
     clock["cycle"] += cycles
     for m, axis in enumerate(paths.axis[g]):
         if axis >= 0 and state.owner[axis] == g:

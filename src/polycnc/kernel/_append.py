@@ -117,9 +117,14 @@ def append_spline(
 
 
 @entry
-def append_wait(seg: Segments, paths: Paths, g: int, duration_s: float, event: int, tag: int) -> None:
-    """Append a wait at rest of `duration_s` that reports `event` (-1 none) when it begins."""
+def append_wait(
+    seg: Segments, paths: Paths, g: int, duration_s: float, event: int, tag: int, passes: int
+) -> None:
+    """Append a wait at rest of `duration_s` that reports `event` (-1 none) when it begins.
+
+    With `passes` the path need not stop for whoever wants its events: it may note it and go on, see `settle`.
+    """
     stop_before_next(seg, paths, g)
     k = slot(paths, g, paths.row[g]["tail"])
-    set_wait(seg, k, paths.queued[g], duration_s, event, tag)
+    set_wait(seg, k, paths.queued[g], duration_s, event, tag, passes)
     appended(seg.end, paths.row, paths.queued, g, k)

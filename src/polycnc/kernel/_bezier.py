@@ -15,7 +15,7 @@ too short to be seen, is straight.
 from __future__ import annotations
 
 import math
-from typing import TypeAlias
+from typing import Annotated, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
@@ -23,6 +23,7 @@ import numpy.typing as npt
 from polycnc.kernel._jit import allocating, compiled, entry
 
 Floats: TypeAlias = npt.NDArray[np.float64]
+Table: TypeAlias = Annotated[Floats, 2]
 Pair: TypeAlias = tuple[float, float]
 
 BEZIER_SIZE = 16
@@ -295,7 +296,7 @@ def _cut_curve(control: Floats, shortest: float, spans: Floats) -> int:
 
 
 @entry
-def cut_bezier(control: Floats, spans: Floats) -> int:
+def cut_bezier(control: Table, spans: Table) -> int:
     """Cut the curve with control points `control[4, 2]` (mm, the first one 0) into `spans[MOST_SPANS, SPAN_SIZE]`.
 
     Return how many, -1 if it would be more. A span holds the row of its segment, the way from the start of the curve to

@@ -20,12 +20,21 @@ from polycnc.kernel._jit import compiled, entry
 from polycnc.kernel._lookahead import window_speed
 from polycnc.kernel._path import (
     EVENT,
+    FEED_S,
     HELD,
     INSIDE,
+    MOST_PASSED,
     NO_LIMIT,
+    PASSED_AT_ONCE,
+    PASSED_CYCLE,
+    PASSED_EVENT,
+    PASSED_FEED_S,
+    PASSED_RAPID_S,
+    RAPID_S,
     READY,
     REST_SLACK,
     RESTED,
+    RESTS_PER_CYCLE,
     RUNNING,
     STILL,
     Paths,
@@ -48,14 +57,37 @@ from polycnc.kernel._ramps import (
     ramps_duration,
     set_pieces,
 )
-from polycnc.kernel._segments import WAIT, WAIT_EVENT, Segments
+from polycnc.kernel._segments import WAIT, WAIT_EVENT, WAIT_PASSES, Segments
 from polycnc.kernel._segments import WAIT_S as GEO_WAIT_S
 from polycnc.kernel._totals import account_time, leave_segment
 
 
 @compiled
-def settle(seg: Segments, paths: Paths, g: int) -> int:
-    """Pass waits of no duration at a point of rest; return EVENT if one of them reports one, else STILL."""
+def _may_pass(seg: Segments, paths: Paths, g: int, k: int, now: int) -> bool:
+    """Note the event of the wait in slot `k` and tell whether the path goes on, in cycle `now`; see `let_pass`."""
+    path = paths.row[g]
+    if path["passes"] == 0 or now < 0 or seg.geo[k, WAIT_PASSES] == 0.0 or path["passed"] >= MOST_PASSED:
+        return False
+    at_once = path["passed_at"] == now
+    if not at_once:
+        path["passed_at"], path["spare"] = now, RESTS_PER_CYCLE - 1
+    elif path["spare"] <= 0:
+        return False
+    else:
+        path["spare"] -= 1
+    row, totals = paths.passed[g, path["passed"]], paths.totals[g]
+    row[PASSED_EVENT], row[PASSED_CYCLE], row[PASSED_AT_ONCE] = seg.geo[k, WAIT_EVENT], now, at_once
+    row[PASSED_FEED_S], row[PASSED_RAPID_S] = totals[FEED_S], totals[RAPID_S]
+    path["passed"] += 1
+    return True
+
+
+@compiled
+def settle(seg: Segments, paths: Paths, g: int, now: int) -> int:
+    """Pass waits of no duration at a point of rest; return EVENT if one of them reports one, else STILL.
+
+    `now` is the cycle, negative where events count for nothing.
+    """
     path = paths.row[g]
     path["event"] = -1
     while path["state"] == READY and path["head"] < path["prepared"]:
@@ -64,7 +96,7 @@ def settle(seg: Segments, paths: Paths, g: int) -> int:
             break
         event = int(seg.geo[k, WAIT_EVENT])
         leave_segment(seg, paths, g, 0.0)
-        if event >= 0:
+        if event >= 0 and not _may_pass(seg, paths, g, k, now):
             path["event"] = event
             return EVENT
     return STILL
@@ -181,7 +213,7 @@ def next_sample(seg: Segments, paths: Paths, g: int, dt: float) -> int:
     """Take path `g` one cycle on in time; return STILL, INSIDE or RESTED. Positions are not evaluated."""
     path, ramps = paths.row[g], paths.ramps[g]
     if path["state"] == READY:
-        while settle(seg, paths, g) == EVENT:
+        while settle(seg, paths, g, -1) == EVENT:
             pass  # whoever wants events has settled before, see `advance` and `skip_path`
         if path["head"] >= path["prepared"] or is_held(path, seg.row[slot(paths, g, path["head"])]):
             return STILL
@@ -275,7 +307,7 @@ def _jump_ahead(paths: Paths, g: int, dt: float) -> int:
     return int(cycles - now)
 
 
-def _steps(seg: Segments, paths: Paths, g: int, dt: float, until: int) -> int:
+def _steps(seg: Segments, paths: Paths, g: int, dt: float, until: int, *_: int) -> int:
     path = paths.row[g]
     if path["jerk_mm_s3"] > 0.0:
         return NO_LIMIT  # each cycle is one, and nobody knows how many there will be
@@ -283,8 +315,8 @@ def _steps(seg: Segments, paths: Paths, g: int, dt: float, until: int) -> int:
 
 
 @entry(steps=_steps)
-def skip_path(seg: Segments, paths: Paths, g: int, dt: float, until: int) -> int:
-    """Go along path `g` while its segment count is below `until`; return the cycles taken.
+def skip_path(seg: Segments, paths: Paths, g: int, dt: float, until: int, cycle: int) -> int:
+    """Go along path `g` from a cycle on while its segment count is below `until`; return the cycles taken.
 
     The cycles are those that `path_cycle` takes, to the last one, but only the last position is evaluated: the
     samples inside a segment are counted at once. Stops at an event, which then stands in the path's row.
@@ -292,8 +324,9 @@ def skip_path(seg: Segments, paths: Paths, g: int, dt: float, until: int) -> int
     path = paths.row[g]
     taken = 0
     path["event"] = -1
+    path["passed_at"] = cycle if path["passes"] != 0 else -1
     while path["head"] < until:
-        if path["state"] == READY and settle(seg, paths, g) == EVENT:
+        if path["state"] == READY and settle(seg, paths, g, cycle + taken) == EVENT:
             break
         if path["state"] == RUNNING and path["pending"] == 0 and not follows(seg, paths, g):
             taken += _jump_ahead(paths, g, dt)

@@ -39,6 +39,13 @@ MOST_MERGED = 101  # points that one line takes the place of
 RAPID_S, FEED_S, WAIT_S, RAPID_LENGTH, FEED_LENGTH, SEGMENTS, TOP_SPEED = 0, 1, 2, 3, 4, 5, 6
 TOTALS = 7
 
+# Columns of `passed`: what an event is, when it was passed, and the totals of the path there.
+PASSED_EVENT, PASSED_CYCLE, PASSED_FEED_S, PASSED_RAPID_S, PASSED_AT_ONCE = 0, 1, 2, 3, 4
+PASSED_COLUMNS = 5
+MOST_PASSED = 1024
+RESTS_PER_CYCLE = 16
+"""Points of rest at which no time passes, as functions that are answered at once, that a path leaves in one cycle."""
+
 
 PATH_ROW = np.dtype(
     [
@@ -56,6 +63,13 @@ PATH_ROW = np.dtype(
         ("blocks", np.int64),  # blocks whose last segment was left since the path began
         ("cycles", np.int64),  # samples taken in the running segment
         ("event", np.int64),  # event last met, -1 none
+        (
+            "passes",
+            np.int64,
+        ),  # events that may be passed are noted in `passed`, if there is room; else they stop
+        ("passed", np.int64),  # so many have been noted
+        ("passed_at", np.int64),  # the cycle of the last one, or from which on the path was let go
+        ("spare", np.int64),  # so many more are passed in that cycle
         ("override", np.float64),  # factor of the programmed feeds; 0 holds moves at feed
         ("rapid_override", np.float64),  # factor of positioning speeds; 0 holds positioning
         ("rapid_top", np.float64),  # highest path speed of positioning
@@ -111,6 +125,7 @@ class Paths(NamedTuple):
     position: Floats  # [G, m] now
     queued: Floats  # [G, m] end of the last segment appended
     blend: Floats  # [G, BLEND_COLUMNS + 3 MOST_MERGED + m] scratch of `_blend`, points merged, a point of scratch
+    passed: Floats  # [G, MOST_PASSED, PASSED_COLUMNS] events that were passed, in their order
     axis: Ints  # [G, m] machine axis of each coordinate, -1 none
 
 
@@ -125,6 +140,7 @@ def make_paths(paths: int, slots: int, coordinates: int) -> Paths:
     row["speed_limit_mm_s"] = np.inf
     row["accel_limit_mm_s2"] = np.inf
     row["event"] = -1
+    row["passed_at"] = -1
     row["limit"] = NO_LIMIT
     row["low_water"] = 1024
     return Paths(
@@ -134,6 +150,7 @@ def make_paths(paths: int, slots: int, coordinates: int) -> Paths:
         position=np.zeros((paths, coordinates)),
         queued=np.zeros((paths, coordinates)),
         blend=np.zeros((paths, BLEND_COLUMNS + 3 * MOST_MERGED + coordinates)),
+        passed=np.zeros((paths, MOST_PASSED, PASSED_COLUMNS)),
         axis=np.tile(np.arange(coordinates, dtype=np.int64), (paths, 1)),
     )
 
@@ -146,7 +163,7 @@ def start_path(paths: Paths, g: int) -> None:
 
 @compiled
 def is_held(path: np.void, row: np.void) -> bool:
-    """Tell whether a path may not go along the segment of this row; an override of 0 leaves waits alone."""
+    """Tell whether a path may not follow the segment of this row; an override of 0 leaves waits alone."""
     if path["hold"] != 0:
         return True
     if row["kind"] == WAIT:

@@ -26,7 +26,7 @@ from polycnc.kernel._lookahead import limit_queue, plan_path
 from polycnc.kernel._merge import close_line, is_open
 from polycnc.kernel._path import HELD, IDLE, NO_LIMIT, READY, RUNNING, Paths, slot
 from polycnc.kernel._ramps import FROM_S, LENGTH, SPEED_OUT, TIME_CRUISE, TIME_IN, ramps_at
-from polycnc.kernel._segments import ASKED, RAPID, STOP, WAIT, Floats, Segments, set_wait
+from polycnc.kernel._segments import ASKED, RAPID, STOP, WAIT, Segments, Table, set_wait
 
 
 @compiled
@@ -146,7 +146,7 @@ def _steps(seg: Segments, paths: Paths, g: int, *_: object) -> int:
 
 
 @entry(steps=_steps)
-def prepare_path(seg: Segments, paths: Paths, g: int, limits: AxisLimits, dt: float, work: Floats) -> None:
+def prepare_path(seg: Segments, paths: Paths, g: int, limits: AxisLimits, dt: float, work: Table) -> None:
     """Take what was appended since the last call into the look-ahead of path `g`. `work` is scratch, [3, n].
 
     If the last segment before is running, the path goes on through its end, unless that is too close. With a
@@ -202,14 +202,14 @@ def earliest_limit(seg: Segments, paths: Paths, g: int, dt: float) -> int:
 
 @entry
 def drop_queue(seg: Segments, paths: Paths, g: int) -> None:
-    """Forget what path `g`, which is at rest, has still to go along; it stands where it is."""
+    """Forget what path `g`, which is at rest, has still to follow; it stays where it is."""
     path = paths.row[g]
     tag = path["tag"]
     path["tail"] = path["head"]
     path["merged"] = 0
     for i in range(paths.queued.shape[1]):
         paths.queued[g, i] = paths.position[g, i]
-    set_wait(seg, slot(paths, g, path["head"]), paths.queued[g], 0.0, -1, tag)  # where it stands
+    set_wait(seg, slot(paths, g, path["head"]), paths.queued[g], 0.0, -1, tag, 0)  # where it stands
     path["head"] += 1
     path["tail"] = path["head"]
     path["prepared"] = path["head"]
@@ -224,7 +224,7 @@ def drop_queue(seg: Segments, paths: Paths, g: int) -> None:
 
 
 @entry(steps=_steps)
-def replan_path(seg: Segments, paths: Paths, g: int, limits: AxisLimits, dt: float, work: Floats) -> None:
+def replan_path(seg: Segments, paths: Paths, g: int, limits: AxisLimits, dt: float, work: Table) -> None:
     """Take over a new override, feed hold or its release from where path `g` stands now."""
     path = paths.row[g]
     head, last = int(path["head"]), int(path["prepared"])

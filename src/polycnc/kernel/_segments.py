@@ -10,7 +10,7 @@ arc in rad, that of a circle in three axes in deg, which whole turns leave exact
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
+from typing import Annotated, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -43,11 +43,12 @@ WORK_POINT = 13
 LIMIT, ASKED, REDUCED, ZONE_IN, ZONE_OUT, EASE = 16, 17, 18, 19, 20, 21
 NODE_WAY, NODE_SPEED, NODE_ACCEL, NODE_FLOOR, NODE_COUNT, SHARE_IN, REACHED = 22, 23, 24, 25, 26, 27, 28
 # Geometry of a SPLINE is laid out in `_bezier`. Geometry of a WAIT.
-WAIT_S, WAIT_EVENT = 0, 1
+WAIT_S, WAIT_EVENT, WAIT_PASSES = 0, 1, 2
 
 TINY = 1e-12
 
 Floats = npt.NDArray[np.float64]
+Table = Annotated[Floats, 2]  # entries say how many dimensions an array has that is no row
 
 
 SEGMENT_ROW = np.dtype(
@@ -271,10 +272,11 @@ def set_spline(
 
 
 @compiled
-def set_wait(seg: Segments, k: int, at: Floats, duration_s: float, event: int, tag: int) -> None:
-    """Fill slot `k` with a wait at rest; `event` >= 0 is reported when the path gets there."""
+def set_wait(seg: Segments, k: int, at: Floats, duration_s: float, event: int, tag: int, passes: int) -> None:
+    """Fill slot `k` with a wait at rest; `event` >= 0 is reported when the path gets there, later if it `passes`."""
     set_common(seg, k, at, at, 0.0, STOP, tag)
     seg.row[k]["kind"] = WAIT
     seg.row[k]["length"] = 0.0
     seg.geo[k, WAIT_S] = max(duration_s, 0.0)
     seg.geo[k, WAIT_EVENT] = event
+    seg.geo[k, WAIT_PASSES] = passes

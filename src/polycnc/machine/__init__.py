@@ -5,12 +5,7 @@ A run needs no store and no host: what a device needs besides is loaded when it 
 
 from typing import TYPE_CHECKING
 
-from polycnc.machine._bounds import (
-    LARGEST_POSITION,
-    LEAST_OVERRIDE,
-    LONGEST_BLOCK_S,
-    PIECE_CYCLES,
-)
+from polycnc.machine._bounds import LARGEST_POSITION, LEAST_OVERRIDE, LONGEST_BLOCK_S, PIECE_CYCLES
 from polycnc.machine._clock import Clock
 from polycnc.machine._config import (
     IoConfig,
@@ -34,6 +29,7 @@ from polycnc.machine._toml import (
     load_toml,
     parse_toml,
     problem,
+    range_text,
     validate,
 )
 from polycnc.machine._toml_locator import KeyPath, Locator
@@ -55,17 +51,6 @@ if TYPE_CHECKING:
     from polycnc.machine._store import Area, Entry, History, Store
     from polycnc.machine._store_file import StoreError
     from polycnc.machine._ways import Condition, Elapsed, Free, Poll, RealTime, Step, Way, wait
-
-_LATER = {
-    "_describe": ("AXIS_COLUMNS", "axis_rows", "describe_machine", "machine_file_reference", "machine_row"),
-    "_device": ("Device", "Timed"),
-    "_host": ("Host", "HostError"),
-    "_pace": ("Pace", "Pacer", "Wall"),
-    "_polling": ("Polling",),
-    "_store": ("Area", "Entry", "History", "Store"),
-    "_store_file": ("StoreError",),
-    "_ways": ("Condition", "Elapsed", "Free", "Poll", "RealTime", "Step", "Way", "wait"),
-}
 
 __all__ = [
     "AXIS_COLUMNS",
@@ -141,10 +126,11 @@ __all__ = [
     "parse_toml",
     "preset_text",
     "problem",
+    "range_text",
     "restore_state",
     "scan_edges",
     "validate",
     "wait",
 ]
 
-__getattr__ = names_on_demand(__name__, _LATER)
+__getattr__ = names_on_demand(__name__)

@@ -299,8 +299,7 @@ class RotaryAxis(AxisConfig):
         "of a head as seen from the nose of the spindle, so that Z is the length of its pivot.",
     )
     direction: tuple[Position, Position, Position] | None = Field(
-        default=None,
-        description="The direction of that line; absent: A turns about X, B about Y, C about Z.",
+        default=None, description="The direction of that line; absent: A turns about X, B about Y, C about Z."
     )
     servo: RotaryServo = Field(default=RotaryServo(), description="Position loop, see `[axis.servo]`.")
 

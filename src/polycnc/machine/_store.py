@@ -17,10 +17,9 @@ from collections.abc import Iterator, Mapping, MutableMapping
 from contextlib import closing, contextmanager, suppress
 from dataclasses import dataclass
 from pathlib import Path
-from types import TracebackType
 from typing import Any, Generic, Self, TypeAlias, TypeVar
 
-from polycnc.errors import UsageError
+from polycnc.errors import UsageError, shown
 from polycnc.machine._store_file import (
     StoreError,
     let_go,
@@ -95,7 +94,7 @@ class Store:
                     self._execute("COMMIT")
             except BaseException:
                 if self._depth == 1 and connection.in_transaction and not self._is_foreign:
-                    with suppress(sqlite3.Error):  # what broke it is what is told
+                    with suppress(sqlite3.Error):  # what broke it is what is reported
                         connection.execute("ROLLBACK")
                 raise
             finally:
@@ -162,9 +161,7 @@ class Store:
     def __enter__(self) -> Self:
         return self
 
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
+    def __exit__(self, *error: object) -> None:
         self.close()
 
     def _open_connection(self) -> sqlite3.Connection:
@@ -291,10 +288,16 @@ class Area(MutableMapping[Key, V], Generic[V]):
 
     def _stored(self, key: Key, value: Any) -> object:
         if self._of is float and type(value) is int:
-            value = float(value)
+            try:
+                value = float(value)
+            except OverflowError:
+                raise UsageError(
+                    f"{self._name} {key!r}: the number is too large for a float",
+                    hint="store a number below 1.8e308",
+                ) from None
         if type(value) is not self._of:
             raise UsageError(
-                f"{self._name} {key!r}: {value!r} is not of type {self._of.__name__}",
+                f"{self._name} {key!r}: {shown(value)} is not of type {self._of.__name__}",
                 hint=f"this area holds values of type {self._of.__name__}",
             )
         if isinstance(value, dict):
@@ -305,7 +308,7 @@ class Area(MutableMapping[Key, V], Generic[V]):
             )
         if isinstance(value, int) and not -(2**63) <= value < 2**63:
             raise UsageError(
-                f"{self._name} {key!r}: {value} is over 64 bits", hint="store it as text or as bytes"
+                f"{self._name} {key!r}: {shown(value)} is over 64 bits", hint="store it as text or as bytes"
             )
         return value
 
@@ -387,7 +390,7 @@ def _checked_name(name: str) -> str:
 
 def _checked_key(key: Key) -> Key:
     if type(key) not in (int, str) or (isinstance(key, int) and not -(2**63) <= key < 2**63):
-        raise UsageError(f"{key!r} cannot be a key", hint="use a whole number of 64 bits, or text")
+        raise UsageError(f"{shown(key)} cannot be a key", hint="use a whole number of 64 bits, or text")
     return key
 
 

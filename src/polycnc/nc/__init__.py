@@ -1,19 +1,19 @@
 """Part programs: block scanner, dialects, modal state, coordinate systems, tool compensation, the channel."""
 
 from polycnc.nc.blocks._channel_state import ChannelState, of_another_channel
+from polycnc.nc.blocks._events import Event, EventRun, function_word
 from polycnc.nc.blocks._messages import Message
 from polycnc.nc.blocks._moves import Stop
 from polycnc.nc.blocks._probe import Probe
-from polycnc.nc.blocks._queue import Event
 from polycnc.nc.channel._channel import Channel
 from polycnc.nc.channel._channel_snapshot import CHANNEL_CLASSES, ChannelSnapshot, Texts
 from polycnc.nc.channel._languages import language_for
 from polycnc.nc.channel._line_check import LineCheck
 from polycnc.nc.channel._options import ChannelOptions
-from polycnc.nc.channel._sub_programs import Library
+from polycnc.nc.channel._sub_programs import Library, SubPrograms
 from polycnc.nc.dialect._dialect import DEFAULT_DIALECT, DIALECTS, Dialect, load_dialect
 from polycnc.nc.dialect._guess import ChosenDialect, choose_dialect, dialect_for
-from polycnc.nc.modal._actions import Action, Group, MAction
+from polycnc.nc.modal._actions import Action, Family, Group, MAction
 from polycnc.nc.modal._modal_snapshot import Spindle
 from polycnc.nc.modal._placement import Placement
 from polycnc.nc.modal._suppressed import Suppressed
@@ -33,6 +33,7 @@ from polycnc.nc.sources._block_source import (
     CallProgram,
     Drain,
     EndSource,
+    KeepingLanguage,
     Language,
     LastingLanguage,
     Pause,
@@ -70,8 +71,11 @@ __all__ = [
     "Drain",
     "EndSource",
     "Event",
+    "EventRun",
+    "Family",
     "Group",
     "IncomingText",
+    "KeepingLanguage",
     "Language",
     "LastingLanguage",
     "Library",
@@ -88,6 +92,7 @@ __all__ = [
     "Spindle",
     "Statement",
     "Stop",
+    "SubPrograms",
     "Suppressed",
     "TextRules",
     "TextSpan",
@@ -97,6 +102,7 @@ __all__ = [
     "Zero",
     "choose_dialect",
     "dialect_for",
+    "function_word",
     "language_for",
     "line_of",
     "load_dialect",

@@ -9,11 +9,12 @@ from polycnc.on_demand import names_on_demand
 from polycnc.runner._check import CheckReport, check, inspect
 from polycnc.runner._execution import LOOP_LIMIT_S
 from polycnc.runner._operations import Operation
-from polycnc.runner._outcome import Alarm, RunEvent, RunMessage, Trace, counted, time_text
+from polycnc.runner._outcome import Alarm, RunMessage, Trace, counted, time_text
 from polycnc.runner._program_control import SCREEN_FORMATS, read_keys
 from polycnc.runner._remarks import Remark
 from polycnc.runner._result import RunResult, TracedResult
 from polycnc.runner._run import run, run_program
+from polycnc.runner._run_events import RunEvent, RunEvents
 from polycnc.runner._settings import RunSettings, program_text
 from polycnc.runner._trace import TraceWriter, read_trace, trace_columns
 from polycnc.runner._trace_formats import TRACE_FORMATS
@@ -24,6 +25,7 @@ if TYPE_CHECKING:
     from polycnc.runner._machining import Machined, MachiningCollector, tools_of
     from polycnc.runner._post import PostResult, post_file
     from polycnc.runner._schemas import SCHEMAS, json_schema
+    from polycnc.runner._survey import LineTime, Survey, holds_before, survey
     from polycnc.runner._verify import Violation, verify_trace
     from polycnc.runner._verify_post import Deviation, PostVerification, verify_post
     from polycnc.runner.batches import BatchResult, batch
@@ -31,20 +33,6 @@ if TYPE_CHECKING:
     from polycnc.runner.machine_sources import machine_from
     from polycnc.runner.plots import PLOT_FORMATS, check_plot_file, plot, plot_track
     from polycnc.runner.view import TrackCollector, View, check_view_file, open_in_browser, view_program
-
-_LATER = {
-    "_debugger": ("Debugger", "Place"),
-    "_machining": ("Machined", "MachiningCollector", "tools_of"),
-    "_post": ("PostResult", "post_file"),
-    "_schemas": ("SCHEMAS", "json_schema"),
-    "_verify": ("Violation", "verify_trace"),
-    "_verify_post": ("Deviation", "PostVerification", "verify_post"),
-    "batches": ("BatchResult", "batch"),
-    "comparison": ("Comparison", "PathDeviation", "compare"),
-    "machine_sources": ("machine_from",),
-    "plots": ("PLOT_FORMATS", "check_plot_file", "plot", "plot_track"),
-    "view": ("TrackCollector", "View", "check_view_file", "open_in_browser", "view_program"),
-}
 
 __all__ = [
     "LOOP_LIMIT_S",
@@ -58,6 +46,7 @@ __all__ = [
     "Comparison",
     "Debugger",
     "Deviation",
+    "LineTime",
     "Machined",
     "MachiningCollector",
     "Operation",
@@ -67,9 +56,11 @@ __all__ = [
     "PostVerification",
     "Remark",
     "RunEvent",
+    "RunEvents",
     "RunMessage",
     "RunResult",
     "RunSettings",
+    "Survey",
     "Trace",
     "TraceWriter",
     "TracedResult",
@@ -83,6 +74,7 @@ __all__ = [
     "check_view_file",
     "compare",
     "counted",
+    "holds_before",
     "inspect",
     "json_schema",
     "machine_from",
@@ -95,6 +87,7 @@ __all__ = [
     "read_trace",
     "run",
     "run_program",
+    "survey",
     "time_text",
     "tools_of",
     "trace_columns",
@@ -103,4 +96,4 @@ __all__ = [
     "view_program",
 ]
 
-__getattr__ = names_on_demand(__name__, _LATER)
+__getattr__ = names_on_demand(__name__)

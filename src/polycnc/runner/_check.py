@@ -6,11 +6,11 @@ from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from polycnc.cnc import RunOptions
+from polycnc.cnc import RunOptions, let_pass
 from polycnc.errors import ProgramError
 from polycnc.machine import Machine, MachineConfig, load_machine
 from polycnc.nc import Dialect, ProgramText
-from polycnc.runner._execution import run_to_end
+from polycnc.runner._execution import Progress, run_to_end
 from polycnc.runner._program_control import control_for, run_under
 from polycnc.runner._rehearsal import rehearsed
 from polycnc.runner._remarks import MachiningWatch, Remark, empty_remark
@@ -72,6 +72,7 @@ def inspect(
     ignore: Iterable[str] = (),
     rehearse: bool = True,
     stock: str | None = None,
+    progress: Progress | None = None,
 ) -> CheckReport:
     """Return the errors of a part program as `check` does, and what a machinist would remark on it.
 
@@ -79,7 +80,8 @@ def inspect(
     program stops, and a program in which nothing stands. A program with statements of a language (CPL) that is linked
     without an error is run in a copy of `root` for that, and for errors of the blocks that it gives, unless `rehearse`
     is off or the folder is larger than 500 files or 32 MB; that, and where its run ended early, is logged. With `stock`
-    (as in `run`) a program without an error cuts it, and collisions are remarked too.
+    (as in `run`) a program without an error cuts it, and collisions are remarked too. `progress` is called now and then
+    with the part that is done, 0 to 1, and may end the check by what it raises.
 
     Raises:
         UsageError: no such file, machine or dialect.
@@ -89,7 +91,7 @@ def inspect(
     read = settings.dialect_of(text)
     if read.problem is not None:
         return CheckReport([read.problem], [])
-    report = _inspected(program, text, read.dialect, settings, rehearse=rehearse)
+    report = _inspected(program, text, read.dialect, settings, rehearse=rehearse, progress=progress)
     return replace(report, guessed=f"dialect {read.dialect.name}: {read.reason}" if read.reason else "")
 
 
@@ -100,6 +102,7 @@ def _inspected(
     settings: RunSettings,
     *,
     rehearse: bool,
+    progress: Progress | None,
 ) -> CheckReport:
     if (endless := text.endless_line()) is not None:
         return CheckReport([endless], [])
@@ -110,12 +113,14 @@ def _inspected(
         errors = control.check(text)
         if errors or not rehearse:
             return CheckReport(errors, [])
-        return CheckReport(*rehearsed(text, simulated.config, chosen, settings.root_of(program)))
+        return CheckReport(*rehearsed(text, simulated.config, chosen, settings.root_of(program), progress))
     options = RunOptions(stands_at_stops=False, collect_errors=True)
-    execution = run_under(control, simulated, text, chosen, options, root=settings.root_of(program))
+    execution = run_under(
+        control, simulated, text, chosen, options, root=settings.root_of(program), on_passed=let_pass
+    )
     watch = MachiningWatch(execution.channel)
     execution.channel.on_filled = watch.look
-    run_to_end(execution, every_cycle=False)
+    run_to_end(execution, every_cycle=False, progress=progress)
     if (empty := empty_remark(text)) is not None:
         return CheckReport(execution.channel.errors, [empty])
     if stock is None or execution.channel.errors:

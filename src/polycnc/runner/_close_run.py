@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import numpy.typing as npt
 
-from polycnc.cnc import ProgramRun, RunOptions
+from polycnc.cnc import ProgramRun, RunOptions, let_pass
 from polycnc.kernel import BLOCK
 from polycnc.machine import Machine, MachineConfig, PathConfig, RotaryAxis, TimesConfig
 from polycnc.nc import Dialect, ProgramText
@@ -47,6 +47,7 @@ def run_closely(
         dialect,
         options=options,
         rows=compare,
+        on_passed=let_pass,
         language=None if control is None else control.language,
         config=None if control is None else control.config,
     )

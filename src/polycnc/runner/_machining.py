@@ -152,9 +152,9 @@ class MachiningCollector:
         begins = np.flatnonzero(np.diff(contexts, prepend=~contexts[:1]))
         lengths = np.diff(begins, append=len(tags))
         found = [self._context(int(tag), records) for tag in tags[begins].tolist()]
-        shift, tool, turns = (
-            np.repeat(np.array(column), lengths, axis=0) for column in zip(*found, strict=True)
-        )
+        shift, tool = (np.repeat(np.array(column), lengths, axis=0) for column in zip(*found, strict=True))
+        pieces = np.split(tags, begins[1:])
+        turns = np.concatenate([records.spindle_turns(piece) for piece in pieces])
         starts = np.flatnonzero(np.diff(tags, prepend=~tags[:1]))
         block = np.repeat(self._table.numbers(tags[starts], records), np.diff(starts, append=len(tags)))
         place = rows[:, LEADING : LEADING + len(self._config.axes)][:, self._axes]
@@ -166,15 +166,15 @@ class MachiningCollector:
                 offsets = [self._config.work_offset(name) for name in words.work]
                 self._zero = [sum(offset[axis] for offset in offsets) for axis in self._axes]
         tip = place - shift
-        self._course.add(Rows(rows[:, TIME_S].copy(), tip, block, tool, rapid, turns.astype(np.bool_)))
+        self._course.add(Rows(rows[:, TIME_S].copy(), tip, block, tool, rapid, turns))
 
-    def _context(self, tag: int, records: BlockRecords) -> tuple[list[float], int, bool]:
-        """Return how a block's tool hangs from the spindle, its number, and whether the spindle turns."""
+    def _context(self, tag: int, records: BlockRecords) -> tuple[list[float], int]:
+        """Return how a block's tool hangs from the spindle, and its number."""
         words = records.lasting_words(tag)
         if words is None:
-            return [0.0, 0.0, 0.0], 0, False
+            return [0.0, 0.0, 0.0], 0
         tool = self._config.tools.get(words.tool, ToolConfig())
-        return [0.0, 0.0, tool.length_mm + tool.wear_length_mm], words.tool, words.spindle_direction != 0
+        return [0.0, 0.0, tool.length_mm + tool.wear_length_mm], words.tool
 
     def _place(self, block: ExecutedBlock) -> SourcePosition | None:
         text = self.texts.get(block.program)
@@ -184,7 +184,7 @@ class MachiningCollector:
         """Cut the body that a form tells, with the tools that machine and programs describe if none are given.
 
         Raises:
-            UsageError: a body that cannot be told, or none that can be cut.
+            UsageError: a body that cannot be derived, or none that can be cut.
         """
         if self._turned:
             raise NoStockError(

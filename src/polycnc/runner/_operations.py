@@ -59,6 +59,11 @@ class OperationCollector:
         if not self._marks or changes_tool or name:
             self._marks.append(_Mark(line, name, tool, time_s, moved))
 
+    def has_remark(self, line: int) -> bool:
+        """Tell whether anything stands between the last function and a line that may be a remark."""
+        content, end = self.text.content, self.text.line_start(line)
+        return any(content.find(sign, self._behind, end) >= 0 for sign in (b"(", b";"))
+
     def operations(self, time_s: float, moved: ToolTime) -> list[Operation]:
         """Return the operations; what cuts nothing belongs to the next, at the end to the last."""
         marks = [*self._marks, _Mark(0, "", 0, time_s, moved)]

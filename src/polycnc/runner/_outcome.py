@@ -16,6 +16,7 @@ from polycnc.machine import MachineConfig
 from polycnc.nc import ProgramText
 from polycnc.runner._blocks import Execution
 from polycnc.runner._operations import Operation
+from polycnc.runner._run_events import RunEvent
 
 if TYPE_CHECKING:
     from polycnc.runner._machining import Collision, Machined
@@ -55,15 +56,6 @@ class RunMessage:
     text: str
     line: int
     count: int
-
-
-@dataclass(frozen=True, slots=True)
-class RunEvent:
-    """An auxiliary function, and when the path came to it."""
-
-    time_s: float
-    line: int
-    word: str
 
 
 @dataclass(frozen=True, repr=False)
@@ -133,7 +125,7 @@ class RunOutcome:
     alarms: list[Alarm]
     messages: list[RunMessage]
     tool_times: dict[int, ToolTime]
-    events: list[RunEvent] = field(repr=False)
+    events: Sequence[RunEvent] = field(repr=False)
     source: ProgramText | None = field(default=None, repr=False, compare=False)
     config: MachineConfig | None = field(default=None, repr=False, compare=False)
     trace: Trace | None = field(default=None, repr=False)

@@ -13,6 +13,7 @@ from polycnc.machine import MachineConfig
 from polycnc.nc import ProgramText
 from polycnc.outputs import check_output, is_special, keep_inputs
 from polycnc.post import (
+    NO_DIALECT,
     ArcAxis,
     BlockMap,
     ControlFile,
@@ -80,7 +81,8 @@ def post_file(
     file names, `arc_axis` for what it says about the axes of CIRCLE/ in a file of APT words.
 
     Raises:
-        UsageError: no such file, control file or machine, `arc_axis` for JSON, or the program cannot be written.
+        UsageError: no such file, control file or machine, `arc_axis` for JSON, the program cannot be written, or
+            nothing reads its language to verify it.
         ConfigurationError: the control file is wrong.
         ProgramError: the tool path cannot be posted.
     """
@@ -89,6 +91,12 @@ def post_file(
         check_output(output, (), "a program")
         keep_inputs(output, files, "a program")
     chosen = control if isinstance(control, ControlFile) else load_control(control)
+    if verify and chosen.parameters.dialect == NO_DIALECT:
+        name = chosen.parameters.description or chosen.parameters.name or chosen.file
+        raise UsageError(
+            f"a program for {name} cannot be proven: nothing here reads its language",
+            hint="Post it without verification, or prove the tool path with another control file.",
+        )
     path = _path_of(tool_path, chosen, arc_axis)
     block_map = BlockMap() if verify else None
     summary, text = _write(path, chosen, output, block_map, progress)

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Protocol
 import numpy as np
 import numpy.typing as npt
 
-from polycnc.cnc import ProgramRun, RunOptions
+from polycnc.cnc import OnPassed, ProgramRun, RunOptions
 from polycnc.errors import ProgramError, UsageError
 from polycnc.machine import Machine, MachineConfig
 from polycnc.nc import Dialect, Event, Language, ProgramText, language_for
@@ -98,6 +98,7 @@ def run_under(
     root: Path | None = None,
     rows: RowsWithTags | None = None,
     on_event: OnEvent | None = None,
+    on_passed: OnPassed | None = None,
 ) -> ProgramRun:
     """Return the run of a program under the control that executes its language, None for NC blocks and macros."""
     run = ProgramRun(
@@ -111,6 +112,7 @@ def run_under(
         options=options,
         rows=rows,
         on_event=on_event,
+        on_passed=on_passed,
     )
     if control is not None:
         control.attach(run)

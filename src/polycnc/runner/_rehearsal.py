@@ -12,11 +12,11 @@ from itertools import takewhile
 from pathlib import Path
 from typing import NamedTuple
 
-from polycnc.cnc import RunOptions
+from polycnc.cnc import RunOptions, let_pass
 from polycnc.errors import PolycncError, ProgramError
 from polycnc.machine import Machine, MachineConfig
 from polycnc.nc import Dialect, ProgramText
-from polycnc.runner._execution import run_to_end
+from polycnc.runner._execution import Progress, run_to_end
 from polycnc.runner._program_control import Surroundings, control_for, run_under
 from polycnc.runner._remarks import MachiningWatch, Remark
 
@@ -34,7 +34,13 @@ class Rehearsal(NamedTuple):
     remarks: list[Remark]
 
 
-def rehearsed(program: ProgramText, config: MachineConfig, dialect: Dialect, root: Path) -> Rehearsal:
+def rehearsed(
+    program: ProgramText,
+    config: MachineConfig,
+    dialect: Dialect,
+    root: Path,
+    progress: Progress | None = None,
+) -> Rehearsal:
     """Return what is wrong with the blocks of a program and remarked on it, as far as it comes without keys and inputs.
 
     Where it ends early, and that it has not been rehearsed at all, is logged.
@@ -50,7 +56,7 @@ def rehearsed(program: ProgramText, config: MachineConfig, dialect: Dialect, roo
         control = control_for(dialect, program, machine, Surroundings(folder))
         assert control is not None
         options = RunOptions(stands_at_stops=False, collect_errors=True)
-        run = run_under(control, machine, program, dialect, options)
+        run = run_under(control, machine, program, dialect, options, on_passed=let_pass)
         watch = MachiningWatch(run.channel)
         errors = run.channel.errors
 
@@ -62,7 +68,7 @@ def rehearsed(program: ProgramText, config: MachineConfig, dialect: Dialect, roo
         run.channel.on_filled = look
         ended: PolycncError | None = None
         try:
-            run_to_end(run, every_cycle=False, control=control, loop_limit_s=_LOOP_LIMIT_S)
+            run_to_end(run, every_cycle=False, progress=progress, control=control, loop_limit_s=_LOOP_LIMIT_S)
             control.finish()
         except PolycncError as error:
             ended = error

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import re
 from collections import Counter
+from collections.abc import Mapping
 from dataclasses import dataclass, field
+from math import isnan
 
 import numpy as np
 import numpy.typing as npt
@@ -36,6 +38,20 @@ class Remark:
         return f"{self.position}: {self.text}{times}"
 
 
+@dataclass(frozen=True, slots=True)
+class _Function:
+    """What an auxiliary function does: whether the spindle turns, which tool comes (0: unknown), whether it stops."""
+
+    word: str
+    turns: bool | None
+    tool: int | None
+    stops: bool
+
+    def changes(self, turning: bool) -> bool:
+        """Tell whether anything is another one after it."""
+        return self.stops or self.tool is not None or self.turns not in (None, turning)
+
+
 @dataclass
 class MachiningWatch:
     """Look at all that a channel puts into its queue.
@@ -53,6 +69,7 @@ class MachiningWatch:
     _rapid_end: float = np.nan  # Z after the last segment, if that was a rapid
     _first: dict[str, tuple[str, SourcePosition]] = field(default_factory=dict)
     _counts: Counter[str] = field(default_factory=Counter)
+    _functions: dict[str, _Function] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         self._state = self.channel.machine.state
@@ -79,29 +96,46 @@ class MachiningWatch:
             return
         slots = int(self._row["base"]) + numbers % int(self._row["capacity"])
         seg = self._state.seg
-        waits = np.flatnonzero(seg.row[slots]["kind"] == WAIT)
+        waits = seg.row[slots]["kind"] == WAIT
+        places = np.flatnonzero(waits)
+        events = seg.geo[slots[places], WAIT_EVENT].astype(np.int64)
+        places, events = places[events >= 0], events[events >= 0]
+        pending = self.channel.writer.events
+        codes = pending.m_codes(events)
+        speaks = ~(codes < 0.0)  # S alone changes nothing here
         begin = 0
-        for index in waits.tolist():
-            self._moves(slots[begin:index])
-            number = int(seg.geo[slots[index], WAIT_EVENT])
-            if number >= 0:
-                self._event(self.channel.writer.events[number].word, int(seg.row[slots[index]]["tag"]))
-            begin = index + 1
-        self._moves(slots[begin:])
+        for index, number, code in zip(
+            places[speaks].tolist(), events[speaks].tolist(), codes[speaks].tolist(), strict=True
+        ):
+            function = self._function(pending[number].word if isnan(code) else f"M{code:.0f}")
+            if function.changes(self._turning):
+                self._moves(slots[begin:index][~waits[begin:index]])
+                self._take(function, int(seg.row[slots[index]]["tag"]))
+                begin = index
+        self._moves(slots[begin:][~waits[begin:]])
 
-    def _event(self, word: str, tag: int) -> None:
-        if word.startswith("T"):  # a turret turns with T alone
-            self._change(int(word[1:]) // 100)
-        if not word.startswith("M"):
-            return
-        code, _, rest = word[1:].partition(" ")
-        action = self.channel.dialect.m_action(int(code)) if code.isdigit() else None
-        if action in _TURNS:
-            self._turning = _TURNS[action]
-        elif action is MAction.TOOL_CHANGE:
-            self._change(int(rest[1:]) if rest.startswith("T") and rest[1:].isdigit() else 0)
-        elif action is MAction.PROGRAM_STOP:
-            self._note("program_stop", f"{word} stops the program until the operator starts it again", [tag])
+    def _function(self, word: str) -> _Function:
+        """Return what an auxiliary function does, by its words."""
+        if word not in self._functions:
+            code, _, rest = word[1:].partition(" ")
+            action = self.channel.dialect.m_action(int(code)) if word[:1] == "M" and code.isdigit() else None
+            tool = None
+            if word.startswith("T"):  # a turret turns with T alone
+                tool = int(word[1:]) // 100
+            elif action is MAction.TOOL_CHANGE:
+                tool = int(rest[1:]) if rest.startswith("T") and rest[1:].isdigit() else 0
+            turns = None if action is None else _TURNS.get(action)
+            self._functions[word] = _Function(word, turns, tool, stops=action is MAction.PROGRAM_STOP)
+        return self._functions[word]
+
+    def _take(self, function: _Function, tag: int) -> None:
+        if function.turns is not None:
+            self._turning = function.turns
+        if function.tool is not None:
+            self._change(function.tool)
+        if function.stops:
+            text = f"{function.word} stops the program until the operator starts it again"
+            self._note("program_stop", text, [tag])
 
     def _change(self, tool: int) -> None:
         self._tool = tool or self._tool
@@ -174,21 +208,24 @@ def empty_remark(program: ProgramText) -> Remark | None:
     return Remark("empty", "the program is empty", SourcePosition(program.name, 1, 1, ""))
 
 
-def times_remark(config: MachineConfig, dialect: Dialect, words: list[str]) -> str:
-    """Return what to say of functions that counted 0 s in a run, empty if none did; `words` are its events."""
+def times_remark(config: MachineConfig, dialect: Dialect, words: Mapping[str, int]) -> str:
+    """Return what to say of functions that counted 0 s in a run, empty if none did.
+
+    `words` are its events, with how often each came.
+    """
     times = config.times
     spindle_counts = times.spindle_start_s > 0.0 or config.spindle.acceleration_rpm_s is not None
     counts = Counter[str]()
-    for word in words:
+    for word, times_met in words.items():
         code = word[1:].partition(" ")[0]
         action = dialect.m_action(int(code)) if word.startswith("M") and code.isdigit() else None
         is_change = action is MAction.TOOL_CHANGE or word.startswith("T")
         if is_change and times.tool_change_s == 0.0:
-            counts["tool change"] += 1
+            counts["tool change"] += times_met
         elif action in _STARTS and not spindle_counts:
-            counts["spindle start"] += 1
+            counts["spindle start"] += times_met
         elif action in _OTHERS and times.auxiliary_s == 0.0:
-            counts["other function"] += 1
+            counts["other function"] += times_met
     if not counts:
         return ""
     parts = [f"{count} {what}{'s' if count > 1 else ''}" for what, count in counts.items()]

@@ -10,10 +10,11 @@ from typing import Literal, overload
 from polycnc.cnc import ProgramRun, RunOptions
 from polycnc.errors import ProgramError
 from polycnc.machine import Machine, MachineConfig, load_machine
-from polycnc.nc import Dialect, ProgramText, line_of
+from polycnc.nc import Dialect, KeepingLanguage, ProgramText, line_of
+from polycnc.outputs import complete_or_absent
 from polycnc.runner._event_log import EventLog
 from polycnc.runner._execution import LOOP_LIMIT_S, Progress, Rows, TaggedRows, run_to_end, totals
-from polycnc.runner._outcome import Alarm, RunEvent, RunMessage
+from polycnc.runner._outcome import Alarm, RunMessage
 from polycnc.runner._program_control import ProgramControl, control_for, run_under
 from polycnc.runner._record import Record
 from polycnc.runner._remarks import empty_remark, times_remark
@@ -136,13 +137,7 @@ def run(
         resolution_mm=resolution_mm,
     )
     return run_program(
-        program,
-        settings,
-        trace=trace,
-        check=check,
-        rows=rows,
-        tagged_rows=tagged_rows,
-        progress=progress,
+        program, settings, trace=trace, check=check, rows=rows, tagged_rows=tagged_rows, progress=progress
     )
 
 
@@ -178,7 +173,7 @@ def run_program(
     chosen = settings.dialect_of(text)
     dialect = chosen.dialect
     control = control_for(dialect, text, simulated, settings.surroundings_of(program))
-    settings.check_screen(program, text, control)
+    settings.check_outputs(program, text, dialect, control)
     log = EventLog(text)
     options = RunOptions(
         block_delete=settings.skip_levels,
@@ -197,9 +192,11 @@ def run_program(
         if record.is_wanted
         else None,
         on_event=lambda event: log.note(event, execution),
+        on_passed=lambda passed: log.note_passed(passed, execution),
     )
     stuck = chosen.problem or _to_end(execution, control, settings, record)
-    _remark(execution, text, times_remark(config, dialect, [event.word for _, event in log.found]))
+    _save_parameters(execution, settings)
+    _remark(execution, text, times_remark(config, dialect, log.counts))
     result = replace(
         _result(execution, log, collector, stuck), guessed=chosen.reason, refused_s=log.refused_s
     )
@@ -250,16 +247,20 @@ def _to_end(
     return stuck
 
 
+def _save_parameters(execution: ProgramRun, settings: RunSettings) -> None:
+    """Write the parameters that outlive the program where that was asked for."""
+    if settings.save_parameters is not None and isinstance(execution.language, KeepingLanguage):
+        with complete_or_absent(Path(settings.save_parameters)) as file:
+            file.write_text(execution.language.kept_text(), encoding="ascii")
+
+
 def _program_alarm(error: ProgramError, time_s: float) -> Alarm:
     file, line, column = (at.file, at.line, at.column) if (at := error.position) else ("", 0, 0)
     return Alarm("program", error.what, error.code, line, column, time_s, file, error.hint, error)
 
 
 def _result(
-    execution: ProgramRun,
-    log: EventLog,
-    collector: TraceCollector | None,
-    stuck: ProgramError | None,
+    execution: ProgramRun, log: EventLog, collector: TraceCollector | None, stuck: ProgramError | None
 ) -> RunResult:
     machine, channel = execution.machine, execution.channel
     config, state = machine.config, machine.state
@@ -293,7 +294,7 @@ def _result(
         messages=[RunMessage(m.text, m.line, m.count) for m in channel.messages.all()],
         tool_times=execution.tool_times,
         operations=log.operations(execution),
-        events=[RunEvent(time_s, event.line, event.word) for time_s, event in log.found],
+        events=log.events(),
         source=execution.program,
         config=config,
         trace=collector.trace() if collector else None,

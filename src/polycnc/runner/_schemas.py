@@ -44,12 +44,7 @@ def _map(values: Schema, description: str) -> Schema:
 
 def _object(properties: dict[str, Schema], optional: tuple[str, ...] = ()) -> Schema:
     required = [name for name in properties if name not in optional]
-    return {
-        "type": "object",
-        "properties": properties,
-        "required": required,
-        "additionalProperties": False,
-    }
+    return {"type": "object", "properties": properties, "required": required, "additionalProperties": False}
 
 
 def _or_null(schema: Schema) -> Schema:
@@ -152,14 +147,7 @@ def _stock() -> Schema:
 
 def _check() -> Schema:
     error = _object(
-        {
-            "text": _TEXT,
-            "hint": _TEXT,
-            "code": _TEXT,
-            "file": _TEXT,
-            "line": _LINE,
-            "column": _LINE,
-        }
+        {"text": _TEXT, "hint": _TEXT, "code": _TEXT, "file": _TEXT, "line": _LINE, "column": _LINE}
     )
     place = {"file": _TEXT, "line": _LINE, "column": _LINE}
     remark = _object({"text": _TEXT, "code": _TEXT, "count": _COUNT, **place})

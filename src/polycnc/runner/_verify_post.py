@@ -22,22 +22,9 @@ import numpy as np
 import numpy.typing as npt
 
 from polycnc.kernel import BLOCK, IS_RAPID, LEADING
-from polycnc.machine import (
-    MachineConfig,
-    ToolConfig,
-    load_machine,
-)
+from polycnc.machine import MachineConfig, ToolConfig, load_machine
 from polycnc.nc import BlockRecords, Dialect, Group, ModalWords, ProgramText, dialect_for
-from polycnc.post import (
-    BlockMap,
-    Parameters,
-    Sweep,
-    Tangency,
-    ToolPath,
-    Ways,
-    sweep_in_runs,
-    sweep_tool_path,
-)
+from polycnc.post import BlockMap, Parameters, Sweep, Tangency, ToolPath, Ways, sweep_in_runs, sweep_tool_path
 from polycnc.runner._close_run import run_closely
 from polycnc.runner._execution import Progress
 from polycnc.runner._post_geometry import Floats, Indices, Moves, to_segments

@@ -9,13 +9,7 @@ from polycnc.cnc import ProgramRun
 from polycnc.controllers.bosch._axes import SystemAxes
 from polycnc.controllers.bosch._channel_ports import ChannelPorts
 from polycnc.controllers.bosch.ncs import Mode
-from polycnc.controllers.bosch.system import (
-    SD_GROUPS,
-    LastFunctions,
-    Moment,
-    ProgrammedShifts,
-    SystemData,
-)
+from polycnc.controllers.bosch.system import SD_GROUPS, LastFunctions, Moment, ProgrammedShifts, SystemData
 from polycnc.nc import Group, ModalWords
 
 _SPINDLE = 1

@@ -81,11 +81,7 @@ class ChannelHost:
         )
         self.keyboard = Keyboard(keys, live=in_device)
         self.dialog = Dialog(
-            self.keyboard,
-            lambda: self.files.left_justified,
-            self._bitmap,
-            self._warn,
-            few_keys=self._is_typ2,
+            self.keyboard, lambda: self.files.left_justified, self._bitmap, self._warn, few_keys=self._is_typ2
         )
         self.coupling = Coupling(server or NcsServer(Services(system)), system.shown.image, number)
         self._clock = system.clock

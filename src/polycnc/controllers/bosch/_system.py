@@ -125,11 +125,7 @@ class BoschSystem:
             for number in self.axes.channels
         }
         self.shown = Shown(
-            self.axes,
-            self.channels,
-            self.data.__getitem__,
-            lambda: (self.shifts, self.tools),
-            self.programs,
+            self.axes, self.channels, self.data.__getitem__, lambda: (self.shifts, self.tools), self.programs
         )
 
     # ------------------------------------------------------------------ functions of a channel

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from typing import Annotated, Any, Protocol, TypeAlias, TypeVar
 
 from polycnc.controllers.library._codes import Refused
+from polycnc.errors import shown
 
 T_co = TypeVar("T_co", covariant=True)
 
@@ -103,7 +104,7 @@ class Text:
         if isinstance(value, (bytes, bytearray)):
             return value.split(b"\0", 1)[0].decode("latin-1")
         if not isinstance(value, str):
-            raise TypeError(f"a text, not {value!r}")
+            raise TypeError(f"a text, not {shown(value)}")
         return value
 
 
@@ -136,7 +137,7 @@ class Bytes:
         if isinstance(value, (list, tuple)):
             return b"".join(map(bytes, value))
         if value is None or isinstance(value, int):
-            raise TypeError(f"memory, not {value!r}")
+            raise TypeError(f"memory, not {shown(value)}")
         return bytes(value)
 
 

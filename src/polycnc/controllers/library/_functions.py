@@ -22,6 +22,7 @@ from typing import Annotated, Any, TypeVar, get_args, get_origin, get_type_hints
 
 from polycnc.controllers.library._c_types import CType, Pointer
 from polycnc.controllers.library._codes import Code
+from polycnc.errors import shown
 
 
 class Direction(Enum):
@@ -95,7 +96,7 @@ class Argument:
         try:
             return self.type.take(value, to)
         except (TypeError, ValueError, OverflowError, AttributeError) as error:
-            raise BadArgument(f"{self.name} cannot be {value!r:.60}: {error}") from None
+            raise BadArgument(f"{self.name} cannot be {shown(value)}: {error}") from None
 
     @property
     def declaration(self) -> str:

@@ -15,7 +15,7 @@ from polycnc.nc.blocks._channel_state import of_another_channel
 from polycnc.nc.blocks._moves import Stop, Wait
 from polycnc.nc.blocks._tool_offsets import tool_data
 from polycnc.nc.blocks._words import GWord, MWord, code_text, whole_number
-from polycnc.nc.modal._actions import SPINDLE_SENSES, Action, Group, MAction
+from polycnc.nc.modal._actions import M_SENSES, SPINDLE_SENSES, Action, Group, MAction, coolant_with
 from polycnc.nc.modal._modal import FEED_MODE, FEED_PER_MINUTE, INCH
 from polycnc.nc.text._scan_plain import Word
 from polycnc.units import MM_PER_INCH
@@ -234,7 +234,5 @@ def _wait(block: BlockContext, m: MWord) -> Wait:
 
 def _switch_coolant(block: BlockContext, m: MWord) -> None:
     spindle = block.after.spindle
-    others = tuple(code for code in spindle.coolant if code != m.code)
-    block.after.spindle = replace(
-        spindle, coolant=() if m.action is MAction.COOLANT_OFF else (*others, m.code)
-    )
+    coolant = coolant_with(spindle.coolant, m.code, M_SENSES[m.action])
+    block.after.spindle = replace(spindle, coolant=coolant)

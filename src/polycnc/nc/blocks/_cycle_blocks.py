@@ -48,12 +48,7 @@ _TURN = {1: "M3", -1: "M4"}
 MOST_HOLES = 9999
 _BACK_BORE = "cycle_back_bore"
 # The words that most errors of a cycle are about.
-_TROUBLE_LETTERS = {
-    "upwards": "RZ",
-    "peck": "Q",
-    "back": "K",
-    "dwell": "P",
-}
+_TROUBLE_LETTERS = {"upwards": "RZ", "peck": "Q", "back": "K", "dwell": "P"}
 
 
 def begin(block: BlockContext, g: GWord) -> None:

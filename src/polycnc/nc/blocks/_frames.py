@@ -21,13 +21,7 @@ LARGEST_FACTOR = 1000.0
 LARGEST_OFFSET_NUMBER = 999
 LARGEST_ANGLE = 360_000.0
 _FACTORS = "IJK"
-_TOOL_FIELDS = {
-    1: "length_mm",
-    10: "length_mm",
-    11: "wear_length_mm",
-    12: "radius_mm",
-    13: "wear_radius_mm",
-}
+_TOOL_FIELDS = {1: "length_mm", 10: "length_mm", 11: "wear_length_mm", 12: "radius_mm", 13: "wear_radius_mm"}
 
 
 @carries_out(Action.SCALING)

@@ -14,16 +14,7 @@ from polycnc.nc.blocks._handlers import carries_out
 from polycnc.nc.blocks._words import GWord, code_text, whole_number
 from polycnc.nc.modal._actions import Action
 from polycnc.nc.modal._frame import Rotation
-from polycnc.nc.modal._modal import (
-    AXIS_P,
-    AXIS_Q,
-    AXIS_R,
-    NO_AXIS,
-    PLANE,
-    PLANE_LETTERS,
-    PLANE_XY,
-    set_plane,
-)
+from polycnc.nc.modal._modal import AXIS_P, AXIS_Q, AXIS_R, NO_AXIS, PLANE, PLANE_LETTERS, PLANE_XY, set_plane
 from polycnc.nc.modal._placement import Placement, Vector, total
 
 LARGEST_FACTOR = 1000.0

@@ -24,27 +24,10 @@ from polycnc.kernel import (
     free_slots,
     merge_line,
 )
+from polycnc.nc.blocks._events import Event, EventRun, PendingEvents
 from polycnc.nc.blocks._moves import Arc, Feed, Line, QueueItem, Spline, Stop, Wait
 
 NO_EVENT = -1
-
-
-@dataclass(frozen=True, slots=True)
-class Event:
-    """Something that the path has come to: an auxiliary function by its words, or a point where it may stand.
-
-    `line` and `tag` are the block's line and the reference of its record. `default_s` is what the machine file says
-    that the function takes, where the queue does not wait for it (`QueueWriter.answers`). `message` is what the
-    operator is told there. Preparation continues after a `barrier` when it has been answered.
-    """
-
-    word: str
-    line: int
-    stop: Stop | None = None
-    default_s: float = 0.0
-    tag: int = field(default=0, compare=False)
-    message: str = ""
-    barrier: bool = False
 
 
 class WriterSnapshot(NamedTuple):
@@ -72,7 +55,7 @@ class QueueWriter:
     limits: AxisLimits
     path: int = 0
     backlog: deque[QueueItem] = field(default_factory=deque)
-    events: dict[int, Event] = field(default_factory=dict)
+    events: PendingEvents = field(default_factory=PendingEvents)
     stands_at_stops: bool = False
     answers: bool = False
     stops: int = 0
@@ -126,11 +109,11 @@ class QueueWriter:
 
     def put_again(self) -> None:
         """Append the events that have not been come to anew, because the queue that they were in has been dropped."""
-        events = [self.events[number] for number in sorted(self.events)]
+        events = self.events.values()
         self.events.clear()
         self.probes.clear()
         for event in events:
-            self._append_wait(0.0, self._next_event, event.tag)
+            self._append_wait(0.0, self._next_event, event.tag, passes=event.passes)
             self._note(event)
 
     def take(self, number: int) -> Event:
@@ -138,14 +121,23 @@ class QueueWriter:
         self.probes.pop(number, None)
         return self.events.pop(number)
 
+    def take_some(self, number: int, most: int) -> Event | EventRun:
+        """Return an event that the path has come to, or up to `most` of a run of plain blocks from it on."""
+        found = self.events.pop_some(number, most)
+        if isinstance(found, Event):
+            self.probes.pop(number, None)
+        return found
+
     def snapshot(self) -> WriterSnapshot:
         """Return what has been put and not been come to, to go back to; the queue itself is the kernel's."""
         marks = None if self.marks is None else tuple(self.marks)
-        return WriterSnapshot(dict(self.events), self.stops, self._next_event, tuple(self.backlog), marks)
+        return WriterSnapshot(
+            self.events.snapshot(), self.stops, self._next_event, tuple(self.backlog), marks
+        )
 
     def restore(self, saved: WriterSnapshot) -> None:
         """Go back to a snapshot."""
-        self.events = dict(saved.events)
+        self.events.restore(saved.events)
         self.probes = {n: event.tag for n, event in saved.events.items() if event.stop is Stop.PROBE}
         self.stops = saved.stops
         self._next_event = saved.next_event
@@ -230,15 +222,25 @@ class QueueWriter:
         stands = self.stands_at_stops and item.stop in (Stop.PROGRAM, Stop.OPTIONAL)
         stops = item.stop is Stop.DRAIN or stands
         for word in words:
-            self._append_wait(0.0, self._next_event, item.tag)
             time_s = item.duration_s if answered and word is words[-1] else 0.0
             barrier = answered and not stops and word is words[-1]
             event = Event(word, item.line, item.stop, time_s, item.tag, item.message, barrier)
+            self._append_wait(0.0, self._next_event, item.tag, passes=event.passes)
             self._note(event)
         if stops or answered:
             self.stops += 1
         if (item.duration_s > 0.0 or not words) and not answered:
             self._append_wait(item.duration_s, NO_EVENT, item.tag)
+
+    @property
+    def next_event(self) -> int:
+        """The number of the next event."""
+        return self._next_event
+
+    def note_run(self, run: EventRun) -> None:
+        """Take the events of a run of plain blocks, which are in the queue, from `next_event` on."""
+        self.events.add_run(self._next_event, run)
+        self._next_event += len(run)
 
     def _note(self, event: Event) -> None:
         self.events[self._next_event] = event
@@ -250,8 +252,8 @@ class QueueWriter:
         if self.paths.row[self.path]["merged"] > 0:
             close_line(self.seg, self.paths, self.path, self.limits)
 
-    def _append_wait(self, duration_s: float, event: int, tag: int) -> None:
-        append_wait(self.seg, self.paths, self.path, duration_s, event, tag)
+    def _append_wait(self, duration_s: float, event: int, tag: int, *, passes: bool = False) -> None:
+        append_wait(self.seg, self.paths, self.path, duration_s, event, tag, int(passes))
 
     def _line_length(self, item: Line) -> float:
         """Return the length as the kernel counts it: of the axes that count, else of the others."""

@@ -19,14 +19,7 @@ from polycnc.nc.blocks._block import BlockContext
 from polycnc.nc.blocks._moves import Feed, Line, Point, Spline
 from polycnc.nc.blocks._words import GWord
 from polycnc.nc.modal._actions import Action, Group
-from polycnc.nc.modal._modal import (
-    AXIS_P,
-    AXIS_Q,
-    NO_AXIS,
-    PLANE,
-    PLANE_XY,
-    length_scale,
-)
+from polycnc.nc.modal._modal import AXIS_P, AXIS_Q, NO_AXIS, PLANE, PLANE_XY, length_scale
 from polycnc.nc.text._scan_plain import Word
 
 XY = tuple[float, float]

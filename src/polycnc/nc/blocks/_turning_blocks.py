@@ -52,11 +52,7 @@ def moves(block: BlockContext) -> list[QueueItem]:
     corner = tuple(
         end[axis] if axis in values else kept for axis, kept in zip((x, z), turning.corner, strict=True)
     )
-    turning = replace(
-        turning,
-        corner=(corner[0], corner[1]),
-        taper=turning.taper if taper is None else taper,
-    )
+    turning = replace(turning, corner=(corner[0], corner[1]), taper=turning.taper if taper is None else taper)
     block.after.turning = turning
     if corner[0] is None or corner[1] is None:
         raise block.problem(

@@ -49,9 +49,7 @@ def set_turning_data(block: BlockContext, g: GWord) -> None:
         _set_offset(block, g, COMMON_OFFSET)
     elif MOST_OFFSETS < place <= GEOMETRY:
         raise block.problem(
-            f"there is no offset P{place}",
-            "Write P1 and up for wear, P10001 and up for geometry.",
-            number,
+            f"there is no offset P{place}", "Write P1 and up for wear, P10001 and up for geometry.", number
         )
     else:
         _set_tool(block, g, place % GEOMETRY, _FIELDS[place > GEOMETRY])

@@ -121,9 +121,7 @@ def thread_feed(block: BlockContext, start: AxisPoint, end: AxisPoint, own_lead:
     rpm = feeds.rpm(block, start, start) if spindle.direction else 0.0
     if rpm <= 0.0:
         raise block.problem(
-            "a thread with the spindle at rest",
-            "Start it with S and M3 or M4 first.",
-            block.move_word,
+            "a thread with the spindle at rest", "Start it with S and M3 or M4 first.", block.move_word
         )
     if spindle.surface_speed:
         raise block.problem(

@@ -77,9 +77,7 @@ def refuse_unused(block: BlockContext) -> None:
             block.note(f"'{name}' has no effect here and is ignored")
         elif name in block.after.axis_names:
             raise block.problem(
-                f"'{name}' cannot stand beside this function",
-                "Write the move in a block of its own.",
-                word,
+                f"'{name}' cannot stand beside this function", "Write the move in a block of its own.", word
             )
         elif of_another_channel(name) in block.after.axis_names:
             raise block.problem(

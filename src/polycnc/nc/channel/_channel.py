@@ -29,9 +29,7 @@ from polycnc.nc.dialect._dialect import Dialect
 from polycnc.nc.modal._modal_snapshot import ModalSnapshot
 from polycnc.nc.modal._suppressed import Suppressed
 from polycnc.nc.records._block_records import Call
-from polycnc.nc.sources._block_source import (
-    Language,
-)
+from polycnc.nc.sources._block_source import Language
 from polycnc.nc.text._program import ProgramText
 from polycnc.nc.text._scan import scan_rules
 

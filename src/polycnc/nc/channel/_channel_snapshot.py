@@ -12,12 +12,13 @@ from polycnc.nc.blocks._compensation import RadiusCompensation, SavedCompensatio
 from polycnc.nc.blocks._coordinates import Coordinates
 from polycnc.nc.blocks._corners import Corner
 from polycnc.nc.blocks._cycles import CycleWords
+from polycnc.nc.blocks._events import Event
 from polycnc.nc.blocks._messages import Message
 from polycnc.nc.blocks._moves import Arc, Feed, Line, Spline, Stop, Wait
 from polycnc.nc.blocks._nurbs_curve import Nurbs
 from polycnc.nc.blocks._offset_geometry import Leg
 from polycnc.nc.blocks._probe import Probe
-from polycnc.nc.blocks._queue import Event, WriterSnapshot
+from polycnc.nc.blocks._queue import WriterSnapshot
 from polycnc.nc.blocks._tables import SavedTables
 from polycnc.nc.blocks._tip import TipShift
 from polycnc.nc.blocks._turning import Turning

@@ -27,8 +27,7 @@ def first_state(config: MachineConfig, dialect: Dialect, names: tuple[str, ...])
     dialect.set_initial_state(modal)
     named = dialect.diameter_axes
     set_diameters(
-        modal,
-        [index for index, axis in enumerate(config.axes) if axis.is_diameter or axis.name in named],
+        modal, [index for index, axis in enumerate(config.axes) if axis.is_diameter or axis.name in named]
     )
     state = ChannelState(config, modal)
     state.path_tolerance_mm = dialect.path_tolerance_mm(config.path)

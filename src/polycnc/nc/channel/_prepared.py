@@ -9,6 +9,7 @@ from dataclasses import replace
 from polycnc.kernel import free_slots
 from polycnc.machine import Machine, MachineConfig
 from polycnc.nc.blocks._channel_state import ChannelState
+from polycnc.nc.blocks._events import EventRun
 from polycnc.nc.blocks._moves import Feed, Line
 from polycnc.nc.blocks._queue import QueueWriter
 from polycnc.nc.channel._first_state import first_state
@@ -16,10 +17,10 @@ from polycnc.nc.channel._options import ChannelOptions
 from polycnc.nc.dialect._dialect import Dialect
 from polycnc.nc.fast._carried import NONE, Carried
 from polycnc.nc.fast._plain_blocks import RESERVE, run_plain
-from polycnc.nc.fast._work import carried_by, carry, make_fast_work, marked
+from polycnc.nc.fast._work import begin_run, carried_by, carry, events_made, make_fast_work, marked
 from polycnc.nc.modal._modal import ORDINARY
 from polycnc.nc.records._block_records import BlockRecords, Call
-from polycnc.nc.records._replay import Feeds, RunBegin
+from polycnc.nc.records._replay import Feeds, RunBegin, coolant_after
 from polycnc.nc.text._program import ProgramText
 from polycnc.nc.text._scan import ScanRules, WordColumns
 
@@ -62,14 +63,16 @@ class Prepared:
             self.state = first_state(config, dialect, tuple(axes or config.axis_names))
         if before is not None:
             self.state.tool = before.state.tool
-        spindle = config.spindle
         self._fast_work = make_fast_work(
             self.state.modal,
             self._tables,
-            CHUNK_BLOCKS if options.marks else 0,
+            CHUNK_BLOCKS,
+            marks=options.marks,
             feed_needs_point=dialect.numbers.feed_least_input > 0.0,
-            laser_top=spindle.max_rpm if spindle.laser else None,
+            machine=config,
+            answers=options.answers,
         )
+        self._functions_are_plain = config.spindle.laser or not options.answers
         self.writer.stands_at_stops = options.stands_at_stops
         self.writer.answers = options.answers
         self.writer.marks = deque() if options.marks else None
@@ -107,6 +110,9 @@ class Prepared:
         kernel = self._kernel
         before = self._carried()
         carry(self._fast_work, before)
+        spindle = self.state.spindle
+        plain = self._functions_are_plain and not (spindle.surface_speed or spindle.oriented)
+        begin_run(self._fast_work, self.writer.next_event, functions=plain)
         stopped: tuple[int, int] = run_plain(
             words,
             first,
@@ -122,6 +128,9 @@ class Prepared:
         )
         if (carried := carried_by(self._fast_work)) != before:
             self._take(carried)
+            self.records.note_spoken(base)
+        if (events := events_made(self._fast_work)) is not None:
+            self._take_events(events)
         if self.writer.marks is not None:
             self.writer.marks.extend(marked(self._fast_work))
         return stopped
@@ -138,6 +147,13 @@ class Prepared:
             NONE if radius is None else float(radius),
             NONE if length is None else float(length),
         )
+
+    def _take_events(self, events: EventRun) -> None:
+        """Note the events of the compiled kernel, and the coolant that they have switched."""
+        self.writer.note_run(events)
+        spindle, senses = self.state.spindle, self._tables.m_sense
+        coolant = coolant_after(spindle.coolant, events.code, senses)
+        self.state.spindle = replace(spindle, coolant=coolant)
 
     def _take(self, carried: Carried) -> None:
         """Put in force what the compiled kernel has taken note of."""

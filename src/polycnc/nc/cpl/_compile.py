@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterable
 
 from polycnc.language import Chain, Emitter, Flaw, Flow, Jump, Link, Mark, Python, Source, Traced
 from polycnc.nc.cpl._faults import INVALID_ASSIGNMENT
+from polycnc.nc.cpl._operators import NUMERIC, Typed
 from polycnc.nc.cpl._stores import Stores
 from polycnc.nc.cpl._syntax import (
     Assign,
@@ -28,7 +29,7 @@ from polycnc.nc.cpl._syntax import (
     While,
     Word,
 )
-from polycnc.nc.cpl._values import NUMERIC, Typed
+from polycnc.nc.cpl._values import is_text, makes_text
 from polycnc.nc.cpl._variables import KIND_NAMES, Variable
 
 SLICE = 20_000
@@ -255,7 +256,7 @@ class Compiler:
     def _assign_text(self, target: Name, value: Expression, boxes: list[tuple[str, Name]]) -> None:
         python, index = self._values.element(target)
         stored = self._values.stored(value)
-        new = self._values.makes_text(value)
+        new = makes_text(value)
         if target.variable.scope == "permanent":
             if isinstance(value, Word):
                 raise Flaw(value.at, INVALID_ASSIGNMENT.what, "a permanent variable cannot be deleted")
@@ -323,11 +324,7 @@ class Compiler:
         if isinstance(word.value, float):
             return f"BlockWord({word.address!r}, {word.index}, {word.value!r}, {column})"
         if not word.address:
-            value = (
-                self._values.text(word.value)
-                if self._values.is_text(word.value)
-                else self._stores.passed(word.value)
-            )
+            value = self._values.text(word.value) if is_text(word.value) else self._stores.passed(word.value)
             return f"*inserted(host, {value}, {column})"
         typed = self._values.value(word.value)
         if typed.kind not in NUMERIC:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable
+from functools import partial
 
 from polycnc.language import END, Flaw, Jump, Mark, Source, whole_value
 from polycnc.nc.cpl._faults import NESTING_TOO_DEEP, Fault
@@ -13,6 +14,7 @@ from polycnc.nc.cpl._lexicon import RESERVED
 from polycnc.nc.cpl._nc_lines import PLAIN_RULES, read_nc_line, sequence_number
 from polycnc.nc.cpl._open_lines import open_line
 from polycnc.nc.cpl._reader import Reader, assignment_missing
+from polycnc.nc.cpl._structures import Consequence, Structure, Structures, Unreachable
 from polycnc.nc.cpl._syntax import (
     Assign,
     Call,
@@ -34,15 +36,12 @@ from polycnc.nc.text._program import TextRules
 
 CASES = 10
 """How deep CASE may be nested (Manual 003, 2.5.7)."""
-_STRUCTURES = 100
 _NUMBERED = re.compile(r"[ \t]*([0-9]+)")
 _JUMPS = re.compile(r"GOTO[ \t]*(N?)0*([0-9]+)", re.IGNORECASE)
 _NC_JUMP = re.compile(r"N([0-9]+)")
 _PROGRAM_NAME = re.compile(r"[A-Za-z0-9_/][^\s\[\]:,=]*")
 _ENDS = frozenset(("ELSE", "ENDIF", "NEXT", "UNTIL", "END", "ENDCASE", "LABEL", "OTHERWISE", "REM", ":"))
-_CLOSERS = {If: "ENDIF", For: "NEXT", While: "END", Repeat: "UNTIL", Case: "ENDCASE"}
 _LARGEST = (1 << 31) - 1
-Structure = If | For | While | Repeat | Case
 
 
 def read_program(
@@ -56,36 +55,32 @@ def read_program(
 
     The codes of `alone` call programs where they stand alone in a block; `rules` say how blocks are read.
     """
-    reader = _ProgramReader(source, alone, rules, in_text)
+    read = Structures()
+    reader = _ProgramReader(source, alone, rules, in_text, read)
     for line in range(1, source.line_count + 1):
         reader.line(line, source.begin(line), source.end(line))
-    for opened in (
-        () if reader.flaws else reader.open
-    ):  # else it may be a line that could not be read that closes it
-        keyword = type(opened).__name__.upper()
-        reader.flaws.append(Flaw(opened.at, f"the {keyword} has no {_CLOSERS[type(opened)]}"))
-    return reader.top, reader.flaws
+    return read.top, read.ended()
 
 
 class _ProgramReader:
-    def __init__(self, source: Source, alone: frozenset[str], rules: TextRules, opened: bool) -> None:
+    def __init__(
+        self, source: Source, alone: frozenset[str], rules: TextRules, opened: bool, read: Structures
+    ) -> None:
         self._opened = opened
         self._rules = rules
         self._alone = alone
-        self.top: list[Statement] = []
-        self.open: list[Structure] = []
-        self.flaws: list[Flaw] = []
+        self._read = read
         self._text = source.text
-        self._body = self.top
-        self._bodies: list[list[Statement]] = []
         self._jumps = {f"{letter.upper()}{number}" for letter, number in _JUMPS.findall(source.text)}
         self._goes_on = False
         self._in_block = 0  # instructions that the present block has so far
         self._line = 0
+        close = self._close
         self._instructions: dict[str, Callable[[Reader, int], None]] = {
-            "IF": self._if, "ELSE": self._else, "ENDIF": self._end_if, "FOR": self._for, "NEXT": self._next,
-            "WHILE": self._while, "END": self._end, "REPEAT": self._repeat, "UNTIL": self._until, "CASE": self._case,
-            "LABEL": self._label, "OTHERWISE": self._otherwise, "ENDCASE": self._end_case, "GOTO": self._goto,
+            "IF": self._if, "ELSE": self._else, "ENDIF": partial(close, If, "ENDIF"),
+            "FOR": self._for, "NEXT": self._next, "WHILE": self._while, "END": partial(close, While, "END"),
+            "REPEAT": self._repeat, "UNTIL": self._until, "CASE": self._case, "LABEL": self._label,
+            "OTHERWISE": self._otherwise, "ENDCASE": partial(close, Case, "ENDCASE"), "GOTO": self._goto,
             "DIM": self._dim, "PDIM": self._dim, "CALL": self._call, "WAIT": self._wait,
         }  # fmt: skip
 
@@ -108,26 +103,26 @@ class _ProgramReader:
                     self._target(begin, sequence_number(self._text[begin:end]))
                 self._nc(begin, end, number)
         except Flaw as flaw:
-            self.flaws.append(flaw)
-        except _Consequence:
+            self._read.flaws.append(flaw)
+        except Consequence:
             pass
 
     def _target(self, at: int, name: str) -> None:
         """Note a place that is jumped to; most numbers are not."""
         if name in self._jumps:
-            self._body.append(Mark(at, name))
+            self._read.body.append(Mark(at, name))
 
     def _nc(self, begin: int, end: int, number: int) -> None:
         opened = open_line(self._text, begin, end, number) if self._opened else None
         read = [opened] if opened else read_nc_line(self._text, begin, end, number, self._alone, self._rules)
         for statement in read:
-            before = self._body[-1] if self._body else None
+            before = self._read.body[-1] if self._read.body else None
             if isinstance(statement, NcLine) and isinstance(before, NcLine) and before.last == number - 1:
                 before.last = number
                 for variable, name in statement.names.items():
                     before.names.setdefault(variable, name)
             else:
-                self._body.append(statement)
+                self._read.body.append(statement)
 
     def _cpl(self, begin: int, end: int) -> None:
         reader = Reader(self._text, begin, end)
@@ -141,7 +136,7 @@ class _ProgramReader:
                 self._goes_on = tokens.token.kind == END
             elif token.kind == "label":
                 tokens.step()
-                self._body.append(Mark(token.at, token.word))
+                self._read.body.append(Mark(token.at, token.word))
             elif instruction := self._instructions.get(token.word):
                 tokens.step()
                 instruction(reader, token.at)
@@ -166,8 +161,8 @@ class _ProgramReader:
                     raise Flaw(
                         token.at, f"{token.word} does nothing by itself", "assign its value to a variable"
                     )
-                self._body.append(Command(token.at, target))
-                self._ends(reader)
+                self._read.body.append(Command(token.at, target))
+                _ends(reader)
                 return
             if not function.settable:
                 raise Flaw(token.at, f"nothing can be assigned to {token.word}")
@@ -176,57 +171,28 @@ class _ProgramReader:
             if reader.tokens.token.word != "=":
                 raise assignment_missing(reader)
         reader.tokens.step()
-        self._body.append(Assign(token.at, target, reader.expression()))
-        self._ends(reader)
-
-    def _ends(self, reader: Reader) -> None:
-        token = reader.tokens.token
-        if token.kind != END and token.word not in _ENDS:
-            raise Flaw(
-                token.at, f"the instruction does not go on with {token}", "a colon separates two instructions"
-            )
+        self._read.body.append(Assign(token.at, target, reader.expression()))
+        _ends(reader)
 
     # Structures
 
-    def _begin(self, structure: Structure, body: list[Statement]) -> None:
-        self._body.append(structure)
-        if len(self.open) >= _STRUCTURES:
-            raise Flaw(structure.at, NESTING_TOO_DEEP.what, f"at most {_STRUCTURES} structures", code="2153")
-        self.open.append(structure)
-        self._bodies.append(self._body)
-        self._body = body
-
-    def _top(self, kind: type[Structure], keyword: str, at: int) -> Structure:
-        if not self.open or not isinstance(self.open[-1], kind):
-            if self.flaws:  # the line that opens it may be one that could not be read
-                raise _Consequence
-            inside = f"; open is {type(self.open[-1]).__name__.upper()}" if self.open else ""
-            raise Flaw(at, f"{keyword} without its {kind.__name__.upper()}{inside}")
-        return self.open[-1]
-
-    def _finish(self, kind: type[Structure], keyword: str, at: int) -> Structure:
-        structure = self._top(kind, keyword, at)
-        self.open.pop()
-        self._body = self._bodies.pop()
-        return structure
+    def _close(self, kind: type[Structure], keyword: str, reader: Reader, at: int) -> None:
+        self._read.finish(kind, keyword, at)
+        _ends(reader)
 
     def _if(self, reader: Reader, at: int) -> None:
         condition = reader.expression()
         reader.tokens.expect("THEN", "the condition ends with THEN, in the line of its IF")
         statement = If(at, condition)
-        self._begin(statement, statement.then)
+        self._read.begin(statement, statement.then)
 
     def _else(self, reader: Reader, at: int) -> None:
-        statement = self._top(If, "ELSE", at)
+        statement = self._read.top_of(If, "ELSE", at)
         assert isinstance(statement, If)
         if statement.has_else:
             raise Flaw(at, "a second ELSE", "an IF has one ELSE at most")
         statement.has_else = True
-        self._body = statement.otherwise
-
-    def _end_if(self, reader: Reader, at: int) -> None:
-        self._finish(If, "ENDIF", at)
-        self._ends(reader)
+        self._read.body = statement.otherwise
 
     def _for(self, reader: Reader, at: int) -> None:
         counter = reader.name("the counting variable")
@@ -239,78 +205,62 @@ class _ProgramReader:
         step = reader.expression() if reader.tokens.take("STEP") else None
         reader.tokens.expect("TO", "STEP stands before TO: FOR I%=1 STEP 2 TO 9")
         statement = For(at, counter, start, step, reader.expression())
-        self._begin(statement, statement.body)
-        self._ends(reader)
+        self._read.begin(statement, statement.body)
+        _ends(reader)
 
     def _next(self, reader: Reader, at: int) -> None:
-        statement = self._finish(For, "NEXT", at)
+        statement = self._read.finish(For, "NEXT", at)
         assert isinstance(statement, For)
         token = reader.tokens.token
         if token.kind == "name" and token.word not in RESERVED:
             name = reader.name("the counting variable")
             if name.variable != statement.counter.variable:
                 raise Flaw(name.at, f"this NEXT ends the FOR of {statement.counter.variable.name}")
-        self._ends(reader)
+        _ends(reader)
 
     def _while(self, reader: Reader, at: int) -> None:
         condition = reader.expression()
         if reader.tokens.token.kind != END:
             reader.tokens.expect("DO", "the condition ends with DO")
         statement = While(at, condition)
-        self._begin(statement, statement.body)
-
-    def _end(self, reader: Reader, at: int) -> None:
-        self._finish(While, "END", at)
-        self._ends(reader)
+        self._read.begin(statement, statement.body)
 
     def _repeat(self, reader: Reader, at: int) -> None:
         statement = Repeat(at)
-        self._begin(statement, statement.body)
+        self._read.begin(statement, statement.body)
 
     def _until(self, reader: Reader, at: int) -> None:
-        statement = self._finish(Repeat, "UNTIL", at)
+        statement = self._read.finish(Repeat, "UNTIL", at)
         assert isinstance(statement, Repeat)
         statement.condition = reader.expression()
-        self._ends(reader)
+        _ends(reader)
 
     def _case(self, reader: Reader, at: int) -> None:
         selector = reader.expression()
         reader.tokens.expect("OF", "CASE X% OF")
-        if sum(isinstance(each, Case) for each in self.open) >= CASES:
+        if sum(isinstance(each, Case) for each in self._read.open) >= CASES:
             raise Flaw(at, NESTING_TOO_DEEP.what, f"at most {CASES} CASE inside each other", code="2153")
         statement = Case(at, selector)
-        self._begin(statement, _Unreachable(self.flaws))
+        self._read.begin(statement, Unreachable(self._read.flaws))
 
     def _label(self, reader: Reader, at: int) -> None:
-        statement = self._top(Case, "LABEL", at)
+        statement = self._read.top_of(Case, "LABEL", at)
         assert isinstance(statement, Case)
         if statement.branches and not statement.branches[-1][0]:
             raise Flaw(at, "LABEL after OTHERWISE", "OTHERWISE is the last part of its CASE")
-        values = [self._constant(reader)]
+        values = [_constant(reader)]
         while reader.tokens.take(","):
-            values.append(self._constant(reader))
-        self._body = []
-        statement.branches.append((tuple(values), self._body))
+            values.append(_constant(reader))
+        self._read.body = []
+        statement.branches.append((tuple(values), self._read.body))
 
     def _otherwise(self, reader: Reader, at: int) -> None:
-        statement = self._top(Case, "OTHERWISE", at)
+        statement = self._read.top_of(Case, "OTHERWISE", at)
         assert isinstance(statement, Case)
         if statement.branches and not statement.branches[-1][0]:
             raise Flaw(at, "a second OTHERWISE")
-        self._body = []
-        statement.branches.append(((), self._body))
-
-    def _end_case(self, reader: Reader, at: int) -> None:
-        self._finish(Case, "ENDCASE", at)
-        self._ends(reader)
-
-    def _constant(self, reader: Reader) -> int:
-        sign = -1 if reader.tokens.take("-") else 1
-        token = reader.tokens.token
-        if token.kind != "number" or not token.text.isdigit():
-            raise Flaw(token.at, f"an INTEGER constant is missing before {token}")
-        reader.tokens.step()
-        return sign * whole_value(token, _LARGEST)
+        self._read.body = []
+        statement.branches.append(((), self._read.body))
 
     # Others
 
@@ -326,8 +276,8 @@ class _ProgramReader:
         else:
             raise Flaw(token.at, f"{token} is no jump destination", "GOTO N20, GOTO 120 or GOTO .LABEL")
         reader.tokens.step()
-        self._body.append(Jump(token.at, name))
-        self._ends(reader)
+        self._read.body.append(Jump(token.at, name))
+        _ends(reader)
 
     def _dim(self, reader: Reader, at: int) -> None:
         parameter = self._text[at : at + 4].upper() == "PDIM"
@@ -345,16 +295,16 @@ class _ProgramReader:
             raise Flaw(token.at, "PDIM takes a parameter like P1$, DIM other variables")
         reader.tokens.step()
         opening = reader.tokens.expect("(", "DIM NAME(size) or DIM NAME(size,size)")
-        sizes = [self._constant(reader)]
+        sizes = [_constant(reader)]
         if reader.tokens.take(","):
-            sizes.append(self._constant(reader))
+            sizes.append(_constant(reader))
         reader.tokens.expect(")", "a field has one dimension or two")
         try:
             check_sizes(target.kind, tuple(sizes))
         except Fault as fault:
             raise Flaw(opening.at, fault.what, fault.hint) from None
-        self._body.append(Dim(at, target, tuple(sizes), parameter))
-        self._ends(reader)
+        self._read.body.append(Dim(at, target, tuple(sizes), parameter))
+        _ends(reader)
 
     def _call(self, reader: Reader, at: int) -> None:
         tokens = reader.tokens
@@ -372,55 +322,57 @@ class _ProgramReader:
             raise Flaw(
                 at, "CALL stands alone in its block", "put the other instructions into blocks of their own"
             )
-        self._body.append(SubCall(at, self._line, "", found[0], arguments, unlinked))  # type: ignore[arg-type]
+        self._read.body.append(SubCall(at, self._line, "", found[0], arguments, unlinked))  # type: ignore[arg-type]
 
     def _wait(self, reader: Reader, at: int) -> None:
         tokens = reader.tokens
         statement = Wait(at, self._line)
         if tokens.take("("):
-            statement = self._wait_parameters(reader, at)
+            statement = _wait_parameters(reader, at, self._line)
         if self._in_block or tokens.token.word == ":":
             raise Flaw(
                 at, "a block with WAIT has no colon", "put the other instructions into blocks of their own"
             )
-        self._body.append(statement)
-        self._ends(reader)
-
-    def _wait_parameters(self, reader: Reader, at: int) -> Wait:
-        tokens = reader.tokens
-        condition, state, negated = None, None, False
-        duration, result = None, None
-        if tokens.token.word not in (",", ")"):
-            negated = tokens.take("NOT")
-            in_parentheses = tokens.take("(")
-            if tokens.token.word != "IC":
-                raise Flaw(tokens.token.at, "the condition of WAIT is IC(...)", "WAIT(IC(1,1,1)=TRUE)")
-            condition = reader.call()
-            if in_parentheses:
-                tokens.expect(")", "close the parenthesis")
-            if tokens.take("="):
-                state = reader.expression()
-        if tokens.take(",") and tokens.token.word not in (",", ")"):
-            duration = reader.expression()
-        if tokens.take(","):
-            result = reader.name("the result variable")
-        tokens.expect(")", "WAIT(condition,duration,result)")
-        if condition is None and duration is None:
-            raise Flaw(at, "WAIT with parentheses has a condition or a duration")
-        return Wait(at, self._line, condition, state, negated, duration, result)
+        self._read.body.append(statement)
+        _ends(reader)
 
 
-class _Consequence(Exception):  # noqa: N818 (never leaves this module)
-    """Something is wrong that may come from what was wrong before."""
+def _ends(reader: Reader) -> None:
+    token = reader.tokens.token
+    if token.kind != END and token.word not in _ENDS:
+        raise Flaw(
+            token.at, f"the instruction does not go on with {token}", "a colon separates two instructions"
+        )
 
 
-class _Unreachable(list[Statement]):
-    """Between CASE and its first LABEL: only places to jump to may stand there."""
+def _constant(reader: Reader) -> int:
+    sign = -1 if reader.tokens.take("-") else 1
+    token = reader.tokens.token
+    if token.kind != "number" or not token.text.isdigit():
+        raise Flaw(token.at, f"an INTEGER constant is missing before {token}")
+    reader.tokens.step()
+    return sign * whole_value(token, _LARGEST)
 
-    def __init__(self, flaws: list[Flaw]) -> None:
-        super().__init__()
-        self._flaws = flaws
 
-    def append(self, statement: Statement) -> None:
-        if not isinstance(statement, Mark):
-            self._flaws.append(Flaw(statement.at, "an instruction between CASE and its first LABEL"))
+def _wait_parameters(reader: Reader, at: int, line: int) -> Wait:
+    tokens = reader.tokens
+    condition, state, negated = None, None, False
+    duration, result = None, None
+    if tokens.token.word not in (",", ")"):
+        negated = tokens.take("NOT")
+        in_parentheses = tokens.take("(")
+        if tokens.token.word != "IC":
+            raise Flaw(tokens.token.at, "the condition of WAIT is IC(...)", "WAIT(IC(1,1,1)=TRUE)")
+        condition = reader.call()
+        if in_parentheses:
+            tokens.expect(")", "close the parenthesis")
+        if tokens.take("="):
+            state = reader.expression()
+    if tokens.take(",") and tokens.token.word not in (",", ")"):
+        duration = reader.expression()
+    if tokens.take(","):
+        result = reader.name("the result variable")
+    tokens.expect(")", "WAIT(condition,duration,result)")
+    if condition is None and duration is None:
+        raise Flaw(at, "WAIT with parentheses has a condition or a duration")
+    return Wait(at, line, condition, state, negated, duration, result)

@@ -6,9 +6,10 @@ from collections.abc import Callable
 
 from polycnc.language import Emitter, Flaw, Python
 from polycnc.nc.cpl._faults import INVALID_ASSIGNMENT
+from polycnc.nc.cpl._operators import Typed
 from polycnc.nc.cpl._reader import single
 from polycnc.nc.cpl._syntax import Dim, Expression, Name
-from polycnc.nc.cpl._values import Typed, Values
+from polycnc.nc.cpl._values import Values, is_text
 from polycnc.nc.cpl._variables import KIND_NAMES, Variable
 
 _NUMBER = "+-0123456789"
@@ -137,7 +138,7 @@ class Stores:
             self._out.put(f"{place} = dimension_field({place}, {variable.kind!r}, {sizes!r})")
 
     def passed(self, tree: Expression) -> str:
-        if self.values.is_text(tree):
+        if is_text(tree):
             return self.values.text(tree)
         return self.values.rounded(self.values.value(tree)).text
 

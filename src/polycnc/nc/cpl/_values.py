@@ -7,36 +7,32 @@ expression is DOUBLE all of it is computed with double precision (Manual 003, 2.
 from __future__ import annotations
 
 import ast
-from collections.abc import Callable, Container
-from typing import NamedTuple
+from collections.abc import Callable
 
 from polycnc.language import Chain, Flaw, Python, Unary, infix, prefix
-from polycnc.nc.cpl._faults import INVALID_ASSIGNMENT, NESTING_TOO_DEEP, Fault
+from polycnc.nc.cpl._faults import NESTING_TOO_DEEP, Fault
 from polycnc.nc.cpl._function import Function, Takes
 from polycnc.nc.cpl._functions import FUNCTIONS
-from polycnc.nc.cpl._reader import single
+from polycnc.nc.cpl._operators import (
+    COMPARISONS,
+    LOGIC,
+    NUMERIC,
+    Typed,
+    compared,
+    computed,
+    is_flat,
+    logical,
+    number,
+    rounded,
+    unary,
+)
 from polycnc.nc.cpl._syntax import Call, Expression, Leaf, Name, Number, Parentheses, Text, Word
 from polycnc.nc.cpl._variables import KIND_NAMES, Kind, Variable
 
-NUMERIC: Container[Kind] = ("I", "R", "D", "X")
-_COMPARISONS = {"=": "==", "<>": "!=", "<": "<", "<=": "<=", ">": ">", ">=": ">="}
-_LOGIC = {"AND": "&", "OR": "|", "XOR": "^"}
 _CONSTANT = frozenset("+-.0123456789'\"")
 _CHAIN_DEPTH = 3
 _IN_ONE = 10
 """So many operands are rounded inside each other; what they give is kept: Python nests only so deep."""
-
-
-class Typed(NamedTuple):
-    """A Python expression with its type.
-
-    `exact` tells that it needs no rounding to its type any more, `leaf` that it may be NUL: it was stored so.
-    """
-
-    python: Python
-    kind: Kind
-    exact: bool = True
-    leaf: bool = False
 
 
 class Values:
@@ -118,9 +114,8 @@ class Values:
         Raises:
             Flaw: It is none.
         """
-        if self.makes_text(tree):
-            return self.stored(tree)
-        return f"text_of({self.stored(tree)})"
+        stored = self.stored(tree)
+        return stored if makes_text(tree) else f"text_of({stored})"
 
     def stored(self, tree: Expression, depth: int = 0) -> str:
         """Return a string expression as what a string variable can hold: parts of fields as references.
@@ -146,34 +141,6 @@ class Values:
             case Call() if FUNCTIONS[tree.function].kind in ("S", "X"):
                 return self._text_call(tree)
         raise Flaw(tree.at, "a text is needed")
-
-    def makes_text(self, tree: Expression) -> bool:
-        """Tell whether a string expression makes a new text, which only a dimensioned field can hold."""
-        match tree:
-            case Chain():
-                return True
-            case Parentheses():
-                return self.makes_text(tree.inner)
-            case Call():
-                row = FUNCTIONS[tree.function]
-                source = tree.arguments[0] if row.takes[:1] == (Takes.STORED,) else None
-                return row.new_text or (source is not None and self.makes_text(source))
-        return False
-
-    def is_text(self, tree: Expression) -> bool:
-        """Tell whether an expression is a string expression."""
-        match tree:
-            case Text():
-                return True
-            case Name():
-                return tree.variable.kind == "S"
-            case Parentheses():
-                return self.is_text(tree.inner)
-            case Chain():
-                return self.is_text(tree.first) and all(link.operator == "+" for link in tree.links)
-            case Call():
-                return FUNCTIONS[tree.function].kind == "S"
-        return False
 
     def element(self, name: Name) -> tuple[str, str]:
         """Return a variable and its index, "" if it has none.
@@ -214,7 +181,7 @@ class Values:
         from_list = function.listed and function.results and place >= function.results[0]
         if place in function.results or from_list:
             if from_list and isinstance(tree, Call) and tree.function == "MID$":
-                return self._section(tree)
+                return _section(self, tree)
             return self._result(tree)
         if isinstance(tree, Name) and not tree.indices and self.fields.get(tree.variable.name):
             return self._use(tree.variable, tree.at)
@@ -222,14 +189,6 @@ class Values:
         if function.listed and place >= 1:
             return f"Item({typed.kind!r}, {self.rounded(typed).text})"
         return self.rounded(typed).text
-
-    def _section(self, call: Call) -> str:
-        """Return a part of a character field that a command sets."""
-        first, *others = call.arguments
-        places = [self.assigned(tree) for tree in others if tree is not None]
-        if not isinstance(first, Name) or len(places) != len(others):
-            raise Flaw(call.at, "MID$ sets a part of a character field", "MID$(A$,start[,number])")
-        return f"section({', '.join((self.stored(first), *places))})"
 
     def _result(self, tree: Expression) -> str:
         if isinstance(tree, Call) and tree.function == "MID$":
@@ -247,9 +206,7 @@ class Values:
 
     def rounded(self, typed: Typed) -> Python:
         """Return the value as its type has it, rounded to single precision if need be."""
-        if typed.exact or self._double:
-            return typed.python
-        return Python(f"single({typed.python.text})")
+        return rounded(typed, self._double)
 
     def _typed(self, tree: Expression) -> Typed:
         if isinstance(tree, Name) and tree.variable.kind != "S":  # most of them are variables and numbers
@@ -266,11 +223,11 @@ class Values:
                 return Typed(Python("None"), "N")
             case Word():
                 return Typed(Python(repr(tree.value)), "B")
-            case Parentheses() if not self.is_text(tree):
+            case Parentheses() if not is_text(tree):
                 return self._typed(tree.inner)
             case Unary():
-                return self._unary(tree)
-            case Chain() if not self.is_text(tree):
+                return unary(tree, self._typed(tree.operand), self._double)
+            case Chain() if not is_text(tree):
                 return self._chain(tree)
             case Call() if FUNCTIONS[tree.function].kind != "S":
                 return self._call(tree)
@@ -279,20 +236,8 @@ class Values:
     def _number(self, tree: Number) -> Typed:
         key = (tree.value, "I" if isinstance(tree.value, int) else "D" if self._double else "R")
         if (known := self._numbers.get(key)) is None:
-            self._numbers[key] = known = self._new_number(tree)
+            self._numbers[key] = known = number(tree, self._double)
         return known
-
-    def _new_number(self, tree: Number) -> Typed:
-        if isinstance(tree.value, int):
-            return Typed(Python(repr(tree.value)), "I")
-        if self._double:
-            return Typed(Python(repr(tree.value)), "D")
-        try:
-            return Typed(Python(repr(single(tree.value))), "R")
-        except OverflowError:
-            raise Flaw(
-                tree.at, "the number is too large for REAL", "assign it to a DOUBLE variable: X!"
-            ) from None
 
     def _place(self, name: Name) -> str:
         if not name.indices and name.variable.name not in self.fields:
@@ -300,66 +245,25 @@ class Values:
         python, index = self.element(name)
         return f"{python}[{index}]" if index else python
 
-    def _unary(self, tree: Unary[Leaf]) -> Typed:
-        operand = self._typed(tree.operand)
-        if tree.operator == "NOT":
-            if operand.kind == "B":
-                return Typed(infix(operand.python, "^", Python("True")), "B")
-            if operand.kind == "I":
-                return Typed(prefix("~", operand.python), "I")
-            raise Flaw(tree.at, f"NOT takes BOOLEAN or INTEGER, not {KIND_NAMES[operand.kind]}")
-        if operand.kind not in NUMERIC:
-            raise Flaw(tree.at, f"a sign stands before a number, not before {KIND_NAMES[operand.kind]}")
-        return Typed(prefix(tree.operator, self.rounded(operand)), operand.kind)
-
     def _chain(self, tree: Chain[Leaf]) -> Typed:
         typed = self._typed(tree.first)
         kept: list[str] = []
         for place, link in enumerate(tree.links):
-            if place and place % _IN_ONE == 0 and not self._is_flat(typed):
+            if place and place % _IN_ONE == 0 and not is_flat(typed, self._double):
                 name = self._temporary()
                 kept.append(f"{name} := {typed.python.text}")
                 typed = typed._replace(python=Python(name))
             right = self._typed(link.operand)
-            if link.operator in _COMPARISONS:
-                typed = self._compared(typed, link.operator, right, link.at)
-            elif link.operator in _LOGIC:
-                typed = _logical(typed, link.operator, right, link.at)
+            if link.operator in COMPARISONS:
+                typed = compared(typed, link.operator, right, link.at, self._double)
+            elif link.operator in LOGIC:
+                typed = logical(typed, link.operator, right, link.at)
             else:
-                typed = self._reckoned(typed, link.operator, right, link.at)
+                typed = computed(typed, link.operator, right, link.at, self._double)
         if kept:
             whole = Python(f"({', '.join((*kept, typed.python.text))})[-1]")
             typed = typed._replace(python=whole)
         return typed
-
-    def _is_flat(self, typed: Typed) -> bool:
-        """Tell whether Python computes on with a value without a further parenthesis around it."""
-        return typed.kind != "B" and (typed.exact or self._double)
-
-    def _compared(self, left: Typed, operator: str, right: Typed, at: int) -> Typed:
-        if "N" in (left.kind, right.kind):
-            if operator not in ("=", "<>"):
-                raise Flaw(at, "NUL is only compared by = and <>")
-            value = right if left.kind == "N" else left
-            names = value.leaf and value.python.text[0] not in "'\""
-            tests = ("is", "is not") if names else ("==", "!=")  # Python warns of a constant with `is`
-            test = tests[operator != "="]
-            return Typed(Python(f"{value.python.within(5)} {test} None", 4), "B")
-        numbers = left.kind in NUMERIC and right.kind in NUMERIC
-        if not numbers and left.kind != right.kind and "X" not in (left.kind, right.kind):
-            raise Flaw(at, f"{KIND_NAMES[left.kind]} is not compared with {KIND_NAMES[right.kind]}")
-        if left.kind == "B" and operator not in ("=", "<>"):
-            raise Flaw(at, f"TRUE and FALSE are only compared by = and <>, not by {operator}")
-        python = infix(self.rounded(left), _COMPARISONS[operator], self.rounded(right))
-        return Typed(python, "B")
-
-    def _reckoned(self, left: Typed, operator: str, right: Typed, at: int) -> Typed:
-        if left.kind not in NUMERIC or right.kind not in NUMERIC:
-            wrong = left if left.kind not in NUMERIC else right
-            raise Flaw(at, f"{operator} does not take {KIND_NAMES[wrong.kind]}")
-        whole = operator != "/" and left.kind == right.kind == "I"
-        kind: Kind = "I" if whole else "D" if self._double else "R"
-        return Typed(infix(self.rounded(left), operator, self.rounded(right)), kind, exact=whole)
 
     def _call(self, call: Call) -> Typed:
         row = FUNCTIONS[call.function]
@@ -423,7 +327,7 @@ class Values:
             if isinstance(bare, Word):
                 raise Flaw(bare.at, "+ does not take NUL")
             stored = self.stored(part, depth)
-            return stored if self.makes_text(part) else f"text_of({stored})"
+            return stored if makes_text(part) else f"text_of({stored})"
 
         parts = [text(tree.first)]
         for link in tree.links:
@@ -477,10 +381,40 @@ def _sets(tree: Expression | None) -> bool:
     return False
 
 
-def _logical(left: Typed, operator: str, right: Typed, at: int) -> Typed:
-    if left.kind != right.kind or left.kind not in ("B", "I"):
-        kinds = f"{KIND_NAMES[left.kind]} and {KIND_NAMES[right.kind]}"
-        raise Flaw(
-            at, f"{operator} takes two BOOLEAN or two INTEGER values, not {kinds}", INVALID_ASSIGNMENT.what
-        )
-    return Typed(infix(left.python, _LOGIC[operator], right.python), left.kind)
+def makes_text(tree: Expression) -> bool:
+    """Tell whether a string expression makes a new text, which only a dimensioned field can hold."""
+    match tree:
+        case Chain():
+            return True
+        case Parentheses():
+            return makes_text(tree.inner)
+        case Call():
+            row = FUNCTIONS[tree.function]
+            source = tree.arguments[0] if row.takes[:1] == (Takes.STORED,) else None
+            return row.new_text or (source is not None and makes_text(source))
+    return False
+
+
+def is_text(tree: Expression) -> bool:
+    """Tell whether an expression is a string expression."""
+    match tree:
+        case Text():
+            return True
+        case Name():
+            return tree.variable.kind == "S"
+        case Parentheses():
+            return is_text(tree.inner)
+        case Chain():
+            return is_text(tree.first) and all(link.operator == "+" for link in tree.links)
+        case Call():
+            return FUNCTIONS[tree.function].kind == "S"
+    return False
+
+
+def _section(values: Values, call: Call) -> str:
+    """Return a part of a character field that a command sets."""
+    first, *others = call.arguments
+    places = [values.assigned(tree) for tree in others if tree is not None]
+    if not isinstance(first, Name) or len(places) != len(others):
+        raise Flaw(call.at, "MID$ sets a part of a character field", "MID$(A$,start[,number])")
+    return f"section({', '.join((values.stored(first), *places))})"

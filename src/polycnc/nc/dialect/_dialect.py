@@ -21,7 +21,7 @@ from pydantic import AfterValidator, Field, model_validator
 from polycnc.errors import UsageError
 from polycnc.machine import PathConfig, StrictModel, load_toml, parse_toml, problem, validate
 from polycnc.nc.dialect._cycle_settings import CycleSettings, PeckTap
-from polycnc.nc.modal._actions import M_ACTIONS, NO_SENSE, SPINDLE_SENSES, Action, Family, MAction, of_family
+from polycnc.nc.modal._actions import M_ACTIONS, M_SENSES, NO_SENSE, Action, Family, MAction, of_family
 from polycnc.nc.modal._modal import (
     ABSOLUTE,
     ARC_RELATIVE,
@@ -47,7 +47,7 @@ from polycnc.nc.modal._modal import (
 from polycnc.nc.text._program import TextRules
 
 G_CODES = 10000  # G0 to G999.9
-M_SENSES = 100  # M0 to M99 are looked at for a way to turn
+_LOW_M = 100  # M0 to M99 are looked at for what they switch
 
 _CODE = re.compile(r"([GgMm])[ \t]*([0-9]{1,5}(?:\.[0-9])?)")
 _PLANES = {"xy": PLANE_XY, "zx": PLANE_ZX, "yz": PLANE_YZ}
@@ -379,10 +379,10 @@ class Dialect(StrictModel):
         for tenths, action in self._by_code.items():
             if not (self.notes_codes and action is Action.FEED_PER_MINUTE):  # only ordinary blocks are noted
                 g_action[tenths] = action
-        m_sense = np.full(M_SENSES, NO_SENSE, np.int8)
+        m_sense = np.full(_LOW_M, NO_SENSE, np.int8)
         for code, m_action in self._by_m.items():
-            if code < M_SENSES and m_action in SPINDLE_SENSES:
-                m_sense[code] = SPINDLE_SENSES[m_action]
+            if code < _LOW_M:
+                m_sense[code] = M_SENSES.get(m_action, NO_SENSE)
         return DialectTables(g_action, self.increment, m_sense, self.tool_word == "select")
 
     def set_initial_state(self, modal: Modal) -> None:
@@ -403,7 +403,7 @@ class Dialect(StrictModel):
 class DialectTables(NamedTuple):
     """The dialect as the compiled kernel reads it: actions by tenths of the G code, increment of numbers.
 
-    `m_sense` says of each M code which way it lets the spindle turn, or NO_SENSE; with `selects` T is for the next tool
+    `m_sense` says of each M code what it switches (`M_SENSES`), or NO_SENSE; with `selects` T is for the next tool
     change and nothing else.
     """
 

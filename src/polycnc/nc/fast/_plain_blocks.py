@@ -33,16 +33,12 @@ from polycnc.kernel import (
 from polycnc.machine import LONGEST_BLOCK_S
 from polycnc.nc.blocks._arcs import ARC_OK, arc_by_center, arc_by_radius
 from polycnc.nc.dialect._dialect import DialectTables
-from polycnc.nc.fast._carried import (
-    CARRIED_WORDS,
-    changes_power,
-    lasts,
-    sense_of,
-    take_note,
-)
+from polycnc.nc.fast._carried import CARRIED_WORDS, FUNCTIONS, changes_power, lasts, sense_of, take_note
+from polycnc.nc.fast._put_events import put_events
 from polycnc.nc.fast._work import (
     AXES,
     CENTERS,
+    EVENTS,
     LASTING,
     LENGTH,
     LETTER_A,
@@ -134,6 +130,7 @@ def run_plain(
     `base` is added to the line of a block for its reference.
     """
     work.said[MARKED] = 0
+    work.said[EVENTS] = 0
     if modal.whole[ORDINARY] != 0:
         return block, NOT_PLAIN
     return _run(words, block, n_blocks, base, tables, modal, seg, paths, g, limits, work)
@@ -187,7 +184,7 @@ def _run(
         if seen & CARRIED_WORDS:
             powers = changes_power(seen, said[SAYS_SENSE], work.value, work.carried)
         tag = base + int(words.line[block])
-        moves, joined = False, NOT_MERGED
+        moves, stopped, joined = False, False, NOT_MERGED
         circular = seen & (said[CENTERS] | said[RADIUS])
         if (seen & said[AXES]) | circular:
             is_arc = motion >= MOTION_ARC_CW
@@ -196,13 +193,7 @@ def _run(
             if motion != MOTION_RAPID and (feed <= 0.0 or whole[FEED_MODE] != FEED_PER_MINUTE):
                 return block, NOT_PLAIN
             if not _target(
-                modal.position,
-                modal.scale,
-                modal.offset,
-                modal.low,
-                modal.high,
-                modal.rotary,
-                work,
+                modal.position, modal.scale, modal.offset, modal.low, modal.high, modal.rotary, work
             ):
                 return block, NOT_PLAIN
             flags = RAPID if motion == MOTION_RAPID else 0
@@ -218,12 +209,21 @@ def _run(
                 speed = feed_number / 60.0
             if _reach(modal.position, work.target) > LONGEST_BLOCK_S * min(speed, modal.real[SLOWEST_AXIS]):
                 return block, NOT_PLAIN  # it may never end: the ordinary path looks closer
+            if is_arc and not _arc(modal, work, speed):
+                return block, NOT_PLAIN
             moves = True
             if powers and path[g]["merged"] > 0:
                 close_line(seg, paths, g, limits)
+            if seen & FUNCTIONS:
+                stopped = put_events(seg, paths, g, limits, work, tag)
             if is_arc:
-                if not _arc(modal, seg, paths, g, limits, work, speed, flags, tag):
-                    return block, NOT_PLAIN
+                p, q = whole[AXIS_P], whole[AXIS_Q]
+                center_p, center_q, sweep = work.arc[0], work.arc[1], work.arc[2]
+                if path[g]["merged"] > 0:
+                    close_line(seg, paths, g, limits)
+                append_arc(
+                    seg, paths, g, limits, work.target, p, q, center_p, center_q, sweep, speed, flags, tag
+                )
             elif path[g]["tolerance_mm"] > 0.0:
                 if path[g]["merged"] > 0:
                     joined = merge_line(seg, paths, g, limits, work.target, speed, flags, tag)
@@ -246,11 +246,14 @@ def _run(
                 )
             for i in range(work.target.shape[0]):
                 modal.position[i] = work.target[i]
-        elif powers and path[g]["merged"] > 0:
-            close_line(seg, paths, g, limits)
+        else:
+            if powers and path[g]["merged"] > 0:
+                close_line(seg, paths, g, limits)
+            if seen & FUNCTIONS:
+                stopped = put_events(seg, paths, g, limits, work, tag)
         if seen & CARRIED_WORDS:
             take_note(seen, said[SAYS_SENSE], work.value, work.carried)
-        if not moves and work.marks.shape[0] > 0 and first < after:
+        if not moves and not stopped and work.marks.shape[0] > 0 and first < after:
             work.marks[said[MARKED], 0] = path[g]["tail"] - (joined != NOT_MERGED)
             work.marks[said[MARKED], 1] = tag if joined == NOT_MERGED else joined
             said[MARKED] += 1
@@ -388,15 +391,10 @@ def _only_rotary(rotary: npt.NDArray[np.uint8], start: Floats, end: Floats) -> b
 @compiled
 def _arc(
     modal: Modal,
-    seg: Segments,
-    paths: Paths,
-    g: int,
-    limits: AxisLimits,
     work: FastWork,
     speed: float,
-    flags: int,
-    tag: int,
 ) -> bool:
+    """Put the centre and the sweep of an arc into `work.arc`; False if it is not plain."""
     whole = modal.whole
     seen = work.said[SEEN]
     clockwise = work.said[SAYS_MOTION] == MOTION_ARC_CW
@@ -450,6 +448,5 @@ def _arc(
     reach = radius * abs(sweep) + _reach(modal.position, work.target)
     if reach > LONGEST_BLOCK_S * min(speed, modal.real[SLOWEST_AXIS]):
         return False
-    if paths.row[g]["merged"] > 0:
-        close_line(seg, paths, g, limits)
-    return append_arc(seg, paths, g, limits, work.target, p, q, center_p, center_q, sweep, speed, flags, tag)
+    work.arc[0], work.arc[1], work.arc[2] = center_p, center_q, sweep
+    return True

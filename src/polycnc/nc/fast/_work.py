@@ -7,8 +7,19 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
+from polycnc.machine import MachineConfig
+from polycnc.nc.blocks._events import EventRun
 from polycnc.nc.dialect._dialect import DialectTables
-from polycnc.nc.fast._carried import CARRIED_COLUMNS, NONE, TOP_SPEED, Carried
+from polycnc.nc.fast._carried import (
+    AUXILIARY_S,
+    CARRIED_COLUMNS,
+    IS_LASER,
+    MAKES_EVENTS,
+    NONE,
+    START_S,
+    TOP_SPEED,
+    Carried,
+)
 from polycnc.nc.modal._modal import NO_AXIS, Floats, Ints, Modal, has_diameters
 
 # What a letter is, besides G.
@@ -18,8 +29,8 @@ LENGTH = 2
 LASTING = 3
 
 # Columns of `said`: what a block says, and the letters of each sort as bits.
-SAYS_MOTION, SAYS_ABSOLUTE, SEEN, AXES, CENTERS, RADIUS, MARKED, SAYS_SENSE = range(8)
-_SAID_COLUMNS = 8
+SAYS_MOTION, SAYS_ABSOLUTE, SEEN, AXES, CENTERS, RADIUS, MARKED, SAYS_SENSE, EVENTS, FIRST_EVENT = range(10)
+_SAID_COLUMNS = 10
 
 LETTERS = 26
 LETTER_A = ord("A")
@@ -36,6 +47,9 @@ class FastWork(NamedTuple):
     target: Floats  # [n]
     marks: Ints  # [blocks, 2] of blocks with words and without motion: segment count before which they stand, tag
     carried: Floats
+    events: Floats  # [most, 2] of the present call: S and M, NONE for none
+    event_tags: Ints  # [most]
+    arc: Floats  # [3] centre and sweep of the arc of the present block
     m_sense: npt.NDArray[np.int8]  # of each M code, see `DialectTables`
 
 
@@ -52,15 +66,17 @@ def carried_by(work: FastWork) -> Carried:
 def make_fast_work(
     modal: Modal,
     tables: DialectTables,
-    marks: int = 0,
+    blocks: int,
     *,
+    marks: bool = False,
     feed_needs_point: bool = False,
-    laser_top: float | None = None,
+    machine: MachineConfig,
+    answers: bool = False,
 ) -> FastWork:
-    """Allocate the scratch for the axes of `modal`; `marks` is the most blocks of one call, or 0 for no marks.
+    """Allocate the scratch for the axes of `modal`; `blocks` is the most of one call, with `marks` they are marked.
 
-    With `feed_needs_point` F counts increments where lengths do, if it has no decimal point. S and the M codes of the
-    spindle are plain on a machine with a laser, whose highest power is `laser_top`.
+    With `feed_needs_point` F counts increments where lengths do, if it has no decimal point. With `answers` the path
+    stands at functions for whoever runs it: blocks with S and M are no plain ones then, but for the power of a laser.
     """
     role = np.full(LETTERS, UNKNOWN, np.int8)
     role[[_N, _F]] = NUMBER
@@ -68,9 +84,10 @@ def make_fast_work(
     if tables.selects:
         role[_T] = LASTING
     carried = np.full(CARRIED_COLUMNS, NONE)
-    if laser_top is not None:
-        role[[_S, _M]] = LASTING
-        carried[TOP_SPEED] = laser_top
+    spindle, times = machine.spindle, machine.times
+    carried[TOP_SPEED] = spindle.max_rpm
+    carried[MAKES_EVENTS], carried[IS_LASER] = not answers, spindle.laser
+    carried[START_S], carried[AUXILIARY_S] = times.spindle_start_s, times.auxiliary_s
     if feed_needs_point:
         role[_F] = LENGTH
     if not has_diameters(modal):  # else centres and radii are scaled otherwise than positions
@@ -92,10 +109,28 @@ def make_fast_work(
         np.zeros(LETTERS),
         said,
         target,
-        np.zeros((marks, 2), np.int64),
+        np.zeros((blocks if marks else 0, 2), np.int64),
         carried,
+        np.zeros((2 * blocks, 2)),
+        np.zeros(2 * blocks, np.int64),
+        np.zeros(3),
         tables.m_sense,
     )
+
+
+def begin_run(work: FastWork, first_event: int, *, functions: bool) -> None:
+    """Say before a call how its events are numbered, and whether S and M are words of plain blocks."""
+    work.said[FIRST_EVENT] = first_event
+    work.role[[_S, _M]] = LASTING if functions else UNKNOWN
+
+
+def events_made(work: FastWork) -> EventRun | None:
+    """Return the events of the last call, which are in the queue; None if there are none."""
+    made = work.said[EVENTS]
+    if not made:
+        return None
+    said = work.events[:made].T.copy()
+    return EventRun(said[0], said[1], work.event_tags[:made].copy())
 
 
 def marked(work: FastWork) -> list[tuple[int, int]]:

@@ -8,23 +8,18 @@ from polycnc.on_demand import names_on_demand
 
 if TYPE_CHECKING:
     from polycnc.nc.macro._calls import Arguments, MacroCalls
+    from polycnc.nc.macro._functions import FUNCTIONS, OPERATORS
     from polycnc.nc.macro._language import MacroLanguage
     from polycnc.nc.macro._macro_source import MacroSource
     from polycnc.nc.macro._system import SystemVariables
     from polycnc.nc.macro._variables import LARGEST, LEVELS, LOCALS, MacroError, MacroVariables, Value
 
-_LATER = {
-    "_calls": ("Arguments", "MacroCalls"),
-    "_language": ("MacroLanguage",),
-    "_macro_source": ("MacroSource",),
-    "_system": ("SystemVariables",),
-    "_variables": ("LARGEST", "LEVELS", "LOCALS", "MacroError", "MacroVariables", "Value"),
-}
-
 __all__ = [
+    "FUNCTIONS",
     "LARGEST",
     "LEVELS",
     "LOCALS",
+    "OPERATORS",
     "Arguments",
     "MacroCalls",
     "MacroError",
@@ -35,4 +30,4 @@ __all__ = [
     "Value",
 ]
 
-__getattr__ = names_on_demand(__name__, _LATER)
+__getattr__ = names_on_demand(__name__)

@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
+from polycnc.language import Flaw
+from polycnc.nc.macro._syntax import Address
 from polycnc.nc.macro._variables import Value
 
 ARGUMENTS_I: Mapping[str, int] = {
@@ -16,11 +18,11 @@ ARGUMENTS_I: Mapping[str, int] = {
 ARGUMENTS_EACH: Mapping[str, int] = {**ARGUMENTS_I, "G": 10, "L": 12, "N": 14, "P": 16}
 """Local variables of all words of a block that becomes a call, by G66.1."""
 
-FIRST_REPEATED = 4
+_FIRST_REPEATED = 4
 """In the second form I, J and K repeat up to ten times: I1 J1 K1 are #4 #5 #6, I2 J2 K2 are #7 #8 #9, ..."""
-MOST_REPEATS = 10
-ABC: Mapping[str, int] = {"A": 1, "B": 2, "C": 3}
-IJK = "IJK"
+_MOST_REPEATS = 10
+_ABC: Mapping[str, int] = {"A": 1, "B": 2, "C": 3}
+_IJK = "IJK"
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,3 +56,47 @@ class Arguments:
     modal: bool = False
     by_code: bool = False
     interrupt: bool = False
+
+
+def argument_numbers(arguments: list[Address] | tuple[Address, ...]) -> list[int]:
+    """Return the local variable of each argument.
+
+    I, J and K of which one repeats are the second form; a number given twice counts last.
+
+    Raises:
+        Flaw: An address that has no local variable, more repetitions than there are variables.
+    """
+    numbers = []
+    seen: set[str] = set()
+    row, last = 0, -1
+    repeated = _repeats(arguments)
+    for word in arguments:
+        letter = word.letter
+        if letter not in ARGUMENTS_I:
+            raise Flaw(
+                word.at,
+                f"{letter} cannot be an argument of a macro",
+                "G, L, N, O and P have no local variable.",
+                code="PS0129" if letter == "G" else "PS0119",
+            )
+        if repeated and letter in _IJK:
+            place = _IJK.index(letter)
+            if place <= last:
+                row += 1
+            last = place
+            if row >= _MOST_REPEATS:
+                raise Flaw(
+                    word.at, f"{letter} for the 11th time", "I, J and K repeat up to 10 times.", code="PS0129"
+                )
+            numbers.append(_FIRST_REPEATED + 3 * row + place)
+            continue
+        if letter in seen:
+            raise Flaw(word.at, f"the argument {letter} stands twice", "Write it once.", code="PS0129")
+        seen.add(letter)
+        numbers.append(_ABC.get(letter, ARGUMENTS_I[letter]))
+    return numbers
+
+
+def _repeats(arguments: list[Address] | tuple[Address, ...]) -> bool:
+    letters = [word.letter for word in arguments if word.letter in _IJK]
+    return len(set(letters)) < len(letters)

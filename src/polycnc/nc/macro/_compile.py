@@ -1,4 +1,4 @@
-"""Custom macros become Python: one generator per program, which gives out blocks and calculates between them."""
+"""Custom macros become Python: one generator per program, which emits blocks and calculates between them."""
 
 from __future__ import annotations
 
@@ -6,9 +6,9 @@ from contextlib import nullcontext
 from dataclasses import dataclass, field
 
 from polycnc.language import Emitter, Flaw, Flow, Traced
+from polycnc.nc.macro._calls import argument_numbers
 from polycnc.nc.macro._expressions import Expressions, Numbers, Value, may_overflow, no_value
 from polycnc.nc.macro._functions import FUNCTIONS, OPERATORS, power
-from polycnc.nc.macro._reader import argument_numbers
 from polycnc.nc.macro._shape import RESTART, Shape, last_label
 from polycnc.nc.macro._statement_values import INTO_LOOP
 from polycnc.nc.macro._syntax import (

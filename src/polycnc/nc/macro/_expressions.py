@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from typing import Protocol
 
 from polycnc.language import Chain, Flaw, Python, Unary, infix, prefix
-from polycnc.nc.macro._reader import COMPARISONS
+from polycnc.nc.macro._operand_reader import COMPARISONS
 from polycnc.nc.macro._syntax import Expression, Function, Name, Number, Variable
 
 _ARITHMETIC = "+-*/"

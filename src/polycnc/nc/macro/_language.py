@@ -154,14 +154,7 @@ class MacroLanguage:
         return MacroSource(self, compiled, None).begin()
 
     def _compile(
-        self,
-        text: ProgramText,
-        offset: int,
-        line: int,
-        plain: bool,
-        *,
-        force: bool,
-        start: int | None = None,
+        self, text: ProgramText, offset: int, line: int, plain: bool, *, force: bool, start: int | None = None
     ) -> Compiled | None:
         calls = _PLAIN_CALLS if plain else self.calls
         known = id(text) in self._latin or force
@@ -288,9 +281,7 @@ class MacroLanguage:
         return saved, compiled, standing_code(compiled, saved)
 
     def _go_to(
-        self,
-        saved: SavedLanguage,
-        sources: Sequence[tuple[SavedSource, Compiled, Traced[int] | None] | None],
+        self, saved: SavedLanguage, sources: Sequence[tuple[SavedSource, Compiled, Traced[int] | None] | None]
     ) -> list[tuple[object, BlockSource | None]]:
         """Go back to a state; return the programs under way."""
         self.variables.restore_state(saved.variables)

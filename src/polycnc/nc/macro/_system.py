@@ -108,11 +108,7 @@ class SystemVariables:
     def saved(self) -> SavedSystem:
         """Return what it holds by itself, to go back to."""
         return SavedSystem(
-            dict(self._stored),
-            dict(self._timers),
-            self.modal_call,
-            self.program_number,
-            self.sequence_number,
+            dict(self._stored), dict(self._timers), self.modal_call, self.program_number, self.sequence_number
         )
 
     def restore_state(self, saved: SavedSystem) -> None:

@@ -261,9 +261,25 @@ class MAction(Enum):
         return self.value[0]
 
 
-NO_SENSE = 2
 SPINDLE_SENSES = {MAction.SPINDLE_CW: 1, MAction.SPINDLE_CCW: -1, MAction.SPINDLE_STOP: 0}
-"""Which way M codes let the spindle turn, 1 clockwise; NO_SENSE stands for all others."""
+"""Which way M codes let the spindle turn, 1 clockwise."""
+
+NO_SENSE, COOLANT_ON, COOLANT_OFF = 2, 3, 4
+M_SENSES = {
+    **SPINDLE_SENSES,
+    MAction.COOLANT_MIST: COOLANT_ON,
+    MAction.COOLANT_FLOOD: COOLANT_ON,
+    MAction.COOLANT_OFF: COOLANT_OFF,
+}
+"""What M codes do that blocks of a compiled run may say: turn the spindle or switch coolant; others are NO_SENSE."""
+
+
+def coolant_with(coolant: tuple[int, ...], code: int, sense: int) -> tuple[int, ...]:
+    """Return the codes of the coolant that is on after an M code that switches coolant."""
+    if sense == COOLANT_OFF:
+        return ()
+    return (*(other for other in coolant if other != code), code)
+
 
 M_ACTIONS: dict[str, MAction] = {action.title: action for action in MAction}
 """M actions by their name in dialect files."""

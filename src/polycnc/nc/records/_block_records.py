@@ -36,7 +36,7 @@ from polycnc.nc.modal._modal import (
 )
 from polycnc.nc.modal._modal_snapshot import ModalSnapshot
 from polycnc.nc.modal._placement import NO_PLACEMENT, Placement
-from polycnc.nc.records._replay import PLAIN_MOTIONS, Replay, RunBegin, latest, replay_of
+from polycnc.nc.records._replay import PLAIN_MOTIONS, Replay, RunBegin, coolant_after, latest, replay_of
 from polycnc.nc.text._program import ProgramText
 from polycnc.nc.text._scan import ScanRules, scan, word_columns
 from polycnc.units import MM_PER_INCH
@@ -136,6 +136,7 @@ class _Context:
     modal: ModalSnapshot
     begin: RunBegin | None  # of a run of plain blocks
     replay: Replay | None = None
+    speaks: bool = False  # the run says something of the spindle
 
     def key(self) -> _Key:
         return self.text, self.stack, self.modal, self.begin
@@ -170,6 +171,10 @@ class BlockRecords:
     ) -> int:
         """Return what is added to a line for its reference, for a run of plain blocks from `begin` on."""
         return self._base((text, stack, modal, begin))
+
+    def note_spoken(self, base: int) -> None:
+        """Take note that the run of plain blocks with this base says something of the spindle."""
+        self._contexts[base >> CONTEXT_SHIFT].speaks = True
 
     def block(self, tag: int) -> BlockRecord | None:
         """Return the record of a block; None for a tag that is no reference, or of a context since dropped."""
@@ -275,6 +280,13 @@ class BlockRecords:
         found[:, 2] *= (MM_PER_INCH if inch else 1.0) / 60.0
         return found
 
+    def spindle_turns(self, tags: npt.NDArray[np.int64]) -> npt.NDArray[np.bool_]:
+        """Tell of each of some tags, which have one context, whether the spindle turns with its block."""
+        context = self._contexts.get(int(tags[0]) >> CONTEXT_SHIFT)
+        if context is not None and context.speaks:
+            return np.not_equal(self.laser(tags)[:, 1], 0.0)
+        return np.full(len(tags), context is not None and context.modal.spindle.direction != 0)
+
     def source(self, tag: int) -> ProgramText | None:
         """Return the text that the block of a tag stands in."""
         context = self._contexts.get(tag >> CONTEXT_SHIFT)
@@ -292,7 +304,10 @@ class BlockRecords:
 
     def restore(self, saved: SavedRecords) -> None:
         """Go back to a snapshot."""
-        self._contexts = {number: _Context(*key) for number, key in saved.contexts.items()}
+        # Whether a run speaks is asked to save time: what is not known is looked up in its text.
+        self._contexts = {
+            number: _Context(*key, speaks=key[-1] is not None) for number, key in saved.contexts.items()
+        }
         self._next, self._enough = saved.next, saved.enough
         self._read.clear()
         self._known = {key: number for number, key in saved.contexts.items()}
@@ -347,8 +362,10 @@ class BlockRecords:
                 d = int(said)
             if (said := latest(replay.m, block, -1.0)) >= 0.0:
                 m = (int(said),)
-                turns = int(latest(replay.direction, block, 0.0))
-                spindle = replace(spindle, direction=turns, oriented=False)
+            turns = int(latest(replay.direction, block, float(spindle.direction)))
+            switched = replay.coolant[1][: bisect_right(replay.coolant[0], block)]
+            coolant = coolant_after(spindle.coolant, switched, self._tables.m_sense)
+            spindle = replace(spindle, direction=turns, coolant=coolant)
         g = {action.group: code for action in _actions(modal, whole) if (code := self._codes.get(action))}
         if name := next((name for name in modal.work if name), ""):
             g[Group.WORK_OFFSET] = name

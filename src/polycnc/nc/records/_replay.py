@@ -3,14 +3,21 @@
 from __future__ import annotations
 
 from bisect import bisect_right
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
 
 from polycnc.nc.dialect._dialect import DialectTables
-from polycnc.nc.modal._actions import Action
+from polycnc.nc.modal._actions import (
+    COOLANT_OFF,
+    COOLANT_ON,
+    NO_SENSE,
+    SPINDLE_SENSES,
+    Action,
+    coolant_with,
+)
 from polycnc.nc.text._program import ProgramText
 from polycnc.nc.text._scan import OPEN_VALUE, WordColumns, open_text
 
@@ -18,6 +25,7 @@ PLAIN_MOTIONS = (Action.RAPID, Action.LINEAR, Action.ARC_CW, Action.ARC_CCW)
 _DISTANCES = (Action.ABSOLUTE, Action.INCREMENTAL)
 _F, _G, _M = ord("F"), ord("G"), ord("M")
 
+Floats = npt.NDArray[np.float64]
 Feeds: TypeAlias = tuple[tuple[str, float], ...]
 """What F words mean that have a variable for their number: how that is written, and its value."""
 
@@ -34,7 +42,10 @@ Said: TypeAlias = tuple[list[int], list[float]]
 
 
 class Replay(NamedTuple):
-    """What the plain blocks of a run say: block numbers and values of each; `direction` and `m` by M words."""
+    """What the plain blocks of a run say: block numbers and values of each; `direction` and `m` by M words.
+
+    `coolant` are the M codes that switch coolant.
+    """
 
     lines: list[int]
     motion: Said
@@ -43,6 +54,7 @@ class Replay(NamedTuple):
     speed: Said
     direction: Said
     m: Said
+    coolant: Said
     next_tool: Said
     d: Said
 
@@ -64,19 +76,46 @@ def replay_of(columns: WordColumns, tables: DialectTables, text: ProgramText, fe
     def of(here: npt.NDArray[np.bool_]) -> Said:
         return block[here].tolist(), value[here].tolist()
 
-    m = of(letter == _M)
-    senses = tables.m_sense.tolist()
+    is_m = letter == _M
+    senses = np.full(words, NO_SENSE)
+    senses[is_m] = senses_of(value[is_m], tables.m_sense)
+    turns = np.isin(senses, list(SPINDLE_SENSES.values()))
     return Replay(
         lines=columns.line[:blocks].tolist(),
         motion=_said(block[is_g], actions, PLAIN_MOTIONS),
         absolute=_said(block[is_g], actions, _DISTANCES),
         feed=of(is_f),
         speed=of(letter == ord("S")),
-        direction=(m[0], [float(senses[int(code)]) if 0.0 <= code < len(senses) else 0.0 for code in m[1]]),
-        m=m,
+        direction=(block[turns].tolist(), senses[turns].astype(float).tolist()),
+        m=of(is_m),
+        coolant=of(np.isin(senses, (COOLANT_ON, COOLANT_OFF))),
         next_tool=of(letter == ord("T")),
         d=of(letter == ord("D")),
     )
+
+
+def senses_of(codes: Floats, m_sense: npt.NDArray[np.int8]) -> npt.NDArray[np.int8]:
+    """Return what M codes switch, see `M_SENSES`."""
+    inside = (codes >= 0.0) & (codes < len(m_sense)) & (codes == np.floor(codes))
+    found = m_sense[np.where(inside, codes, 0.0).astype(np.int64)]
+    return np.where(inside, found, NO_SENSE).astype(np.int8)
+
+
+def coolant_after(
+    coolant: tuple[int, ...], codes: Sequence[float] | Floats, m_sense: npt.NDArray[np.int8]
+) -> tuple[int, ...]:
+    """Return the codes of the coolant that is on after M codes, among which others count for nothing."""
+    said = np.asarray(codes, np.float64)
+    senses = senses_of(said, m_sense)
+    off = np.flatnonzero(senses == COOLANT_OFF)
+    if len(off):
+        coolant, said, senses = (), said[off[-1] + 1 :], senses[off[-1] + 1 :]
+    on = said[senses == COOLANT_ON].astype(np.int64)
+    latest_first = on[::-1]
+    places = np.sort(np.unique(latest_first, return_index=True)[1])
+    for code in latest_first[places][::-1].tolist():
+        coolant = coolant_with(coolant, code, COOLANT_ON)
+    return coolant
 
 
 def _with_feeds(

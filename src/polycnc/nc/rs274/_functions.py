@@ -5,7 +5,11 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 
+import numpy as np
+
 Function = Callable[..., float]
+_PI = np.longdouble("3.14159265358979323846264338327950288")
+_TINY = 1e-9
 
 
 class NumberError(Exception):
@@ -81,6 +85,13 @@ def _round(x: float) -> float:
     return math.floor(x + 0.5) if x >= 0.0 else math.ceil(x - 0.5)
 
 
+def _near_zero(found: float, function: Callable[[np.longdouble], np.longdouble], degrees: float) -> float:
+    """Return what a function of an angle gives; what is all but 0 as LinuxCNC finds it, which FUP and FIX show."""
+    if found == 0.0 or abs(found) > _TINY:
+        return found
+    return float(function(np.longdouble(degrees) * _PI / np.longdouble(180)))
+
+
 FUNCTIONS: dict[str, Function] = {
     "divide": divide,
     "power": power,
@@ -89,14 +100,14 @@ FUNCTIONS: dict[str, Function] = {
     "acos_": _acos,
     "asin_": _asin,
     "atan_": _atan,
-    "cos_": lambda x: math.cos(math.radians(x)),
+    "cos_": lambda x: _near_zero(math.cos(math.radians(x)), np.cos, x),
     "exp_": _exp,
     "fix_": lambda x: float(math.floor(x)),
     "fup_": lambda x: float(math.ceil(x)),
     "ln_": _ln,
     "round_": lambda x: float(_round(x)),
-    "sin_": lambda x: math.sin(math.radians(x)),
+    "sin_": lambda x: _near_zero(math.sin(math.radians(x)), np.sin, x),
     "sqrt_": _sqrt,
-    "tan_": lambda x: math.tan(math.radians(x)),
+    "tan_": lambda x: _near_zero(math.tan(math.radians(x)), np.tan, x),
 }
 """What the Python of a program calls."""

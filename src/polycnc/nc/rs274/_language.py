@@ -9,13 +9,14 @@ from typing import Protocol
 
 from polycnc.errors import ProgramError
 from polycnc.language import Traced, standing
-from polycnc.machine import SnapshotError
+from polycnc.machine import Machine, SnapshotError
 from polycnc.nc.blocks._channel_state import ChannelState
 from polycnc.nc.blocks._messages import Messages
 from polycnc.nc.rs274._parameters import Parameters
-from polycnc.nc.rs274._program import Program, holds_language, is_numbered_within, translate
+from polycnc.nc.rs274._program import Program, translate
 from polycnc.nc.rs274._saved import SAVED_CLASSES, SavedLanguage, SavedProgram
 from polycnc.nc.rs274._source import RunningProgram, sub_program_file
+from polycnc.nc.rs274._structure import holds_language, is_numbered_within
 from polycnc.nc.sources._block_source import BlockSource, Returning
 from polycnc.nc.text._program import ProgramText
 
@@ -27,6 +28,7 @@ class Host(Protocol):
     """What the language asks of the channel that it works for."""
 
     state: ChannelState
+    machine: Machine
     messages: Messages
     skip_levels: frozenset[int]
 
@@ -36,6 +38,7 @@ class NgcLanguage:
 
     def __init__(self, folders: tuple[Path, ...] = ()) -> None:
         self.parameters = Parameters()
+        self.fast_forward = False
         self._folders = folders
         self._channel: Host | None = None
         self._translated: dict[tuple[int, int], tuple[ProgramText, Program]] = {}
@@ -44,7 +47,7 @@ class NgcLanguage:
     def attach(self, channel: Host) -> None:
         """Work for a channel: its positions and modal state are what parameters read."""
         self._channel = channel
-        self.parameters.attach(channel.state)
+        self.parameters.attach(channel.state, channel.machine)
         self._files.clear()
 
     def source(self, text: ProgramText, offset: int, line: int, arguments: object) -> RunningProgram | None:
@@ -60,6 +63,23 @@ class NgcLanguage:
         program = self._of(text, offset)
         return RunningProgram(self, program) if is_numbered or not program.plain else None
 
+    @property
+    def machine(self) -> Machine:
+        """The machine that the channel prepares for."""
+        assert self._channel is not None
+        return self._channel.machine
+
+    def kept_text(self) -> str:
+        """Return the text of a file with the parameters that outlive a program."""
+        return self.parameters.file_text()
+
+    def loops(self) -> bool:
+        """Tell whether programs go round for ever; that is not known here."""
+        return False
+
+    def moves_on(self) -> None:
+        """Take note that something has happened; nothing is kept of it."""
+
     def skips(self, level: int) -> bool:
         """Tell whether lines with a skip mark of this number are left out."""
         return self._channel is not None and level in self._channel.skip_levels
@@ -72,7 +92,9 @@ class NgcLanguage:
             UsageError: the file cannot be read.
         """
         if name not in self._files:
-            path = sub_program_file(name, main, self._folders)
+            path = sub_program_file(
+                name, main, (*self._folders, *map(Path, self.machine.config.programs.folders))
+            )
             text = None if path is None else ProgramText.from_path(path)
             self._files[name] = None if text is None else self._of(text, 0)
             if text is not None:
@@ -139,7 +161,7 @@ class NgcLanguage:
         programs: Sequence[tuple[SavedProgram, list[tuple[Program, Traced[int] | None]]] | None],
     ) -> list[tuple[object, BlockSource | None]]:
         """Go back to a state; return the programs under way."""
-        self.parameters.put_back(saved.common, saved.others, saved.names)
+        self.parameters.restore_state(saved.common, saved.others, saved.names)
         sources = [
             None if each is None else RunningProgram(self, each[1][0][0]).go_to(*each) for each in programs
         ]

@@ -7,107 +7,48 @@ is for, where that is not the innermost one.
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
-from dataclasses import dataclass, field
-from typing import TypeAlias
+from dataclasses import dataclass
 
 from polycnc.errors import ProgramError
 from polycnc.language import Emitter, Flaw, Traced
+from polycnc.nc.rs274._inputs import takes
 from polycnc.nc.rs274._kept_modes import KEEPING
 from polycnc.nc.rs274._line import Expression, Line, LineReader, OWord
+from polycnc.nc.rs274._structure import (
+    CALLS,
+    RETURNS,
+    TEXTS,
+    WAITS,
+    Block,
+    Item,
+    Row,
+    Span,
+    Structure,
+    rows_of,
+)
 from polycnc.nc.text._program import ProgramText
 
-_TEXT_WITH_VALUES = re.compile(rb"\([ \t]*(?i:debug|print)")
-_O = re.compile(rb"[Oo]")
-_KEEPS_MODES = re.compile(rb"[Mm][ \t]*0*7[0-3](?![0-9.])")
-_LONGEST_BEFORE_O = 256
-_BEFORE_O = re.compile(rb"[ \t/]*(?:[Nn][0-9. \t]+)?")
-_O_NUMBER = re.compile(rb"[Oo][ \t]*[0-9]+[ \t]*(?=[(;\r\n]|\Z)")
-"""An O number by itself is the number of a program, and text."""
-_O_WORD = re.compile(rb"[Oo][ \t]*[0-9<]")
-_IS_CODE = re.compile(
-    r"[#\[@^]|^[ \t/]*(?:[Nn][0-9.]+[ \t]*)?[Oo][ \t]*(?![0-9]+[ \t]*(?:[(;\r\n]|$))[0-9<\[#]"
-    r"|M[ \t]*0*7[0-3](?![0-9.])"
-    r"|\([ \t]*(?:debug|print)[ \t]*,",
-    re.IGNORECASE,
-)
-_PROGRAM_NUMBER = re.compile(r"[ \t/]*(?:N[0-9.]+[ \t]*)?O[ \t]*[0-9]+\s*", re.IGNORECASE)
-_COMMENT = re.compile(r"\([^)]*\)|;.*")
 _PARAMETER = re.compile(r"#(?:<[^>]*>|[0-9]+)")
-_TEXTS = re.compile(r"[ \t]*(msg|debug|print)[ \t]*,(.*)", re.IGNORECASE | re.DOTALL)
-_ENDS = {"if": "endif", "while": "endwhile", "repeat": "endrepeat", "sub": "endsub", "do": "while"}
 _MOST_ARGUMENTS = 30
 PAUSE_ROUNDS = 20_000
 
 
-def holds_language(content: bytes) -> bool:
-    """Tell whether a text may hold more than plain words."""
-    return (
-        any(char in content for char in b"#@^")
-        or b"[" in content
-        or any(_O_WORD.match(content, at) and not _O_NUMBER.match(content, at) for at in _o_lines(content))
-        or _TEXT_WITH_VALUES.search(content) is not None
-        or _KEEPS_MODES.search(content) is not None
-    )
-
-
-def is_numbered_within(content: bytes) -> bool:
-    """Tell whether numbers of programs stand within a text: LinuxCNC goes on there, as plain text does not."""
-    numbers = (at for at in _o_lines(content) if _O_NUMBER.match(content, at))
-    return next(numbers, None) is not None and next(numbers, None) is not None
-
-
-def _o_lines(content: bytes) -> Iterator[int]:
-    """Yield where lines have an O as their first letter, but for a number of the block."""
-    for found in _O.finditer(content):
-        at = found.start()
-        least = max(0, at - _LONGEST_BEFORE_O)
-        begin = max(content.rfind(b"\n", least, at), content.rfind(b"\r", least, at)) + 1
-        if _BEFORE_O.fullmatch(content, begin, at):
-            yield at
-
-
-@dataclass(frozen=True, slots=True)
-class Row:
-    """A line of a file: where it begins, its number, its text, and where the next one begins."""
-
-    offset: int
-    number: int
-    text: str
-    end: int
-
-
-@dataclass(slots=True)
-class Block:
-    """An O-word with what stands inside, up to what ends it; IF has several bodies."""
-
-    word: OWord
-    row: Row
-    line: Line
-    bodies: list[tuple[OWord | None, Row, list[Item]]] = field(default_factory=list)
-    end: OWord | None = None
-    end_row: Row | None = None
-
-
-@dataclass(slots=True)
-class Span:
-    """Lines of plain words."""
-
-    begin: Row
-    end: int
-
-
-Item: TypeAlias = "Block | Span | tuple[Row, Line]"
-
-
 @dataclass(slots=True)
 class Program:
-    """A translated file: its main program under the name "" and its sub-programs, each a function `program`."""
+    """A translated file: its main program under the name "" and its sub-programs, each a function `program`.
+
+    A sub-program of M98, which begins at an O number, is there under `numbered_label`.
+    """
 
     text: ProgramText
     offset: int
     functions: dict[str, Traced[int]]
     plain: bool
+
+
+def numbered_label(number: str) -> str:
+    """Return the name of the sub-program of M98 that begins at an O number."""
+    return f"M98 {number}"
 
 
 def translate(text: ProgramText, offset: int) -> Program:
@@ -117,138 +58,12 @@ def translate(text: ProgramText, offset: int) -> Program:
         ProgramError: it is not as the language wants it.
     """
     try:
-        rows = _rows(text, offset)
-        items, subs = _Structure(text).read(rows)
-        return _Writer(text, offset).write(items, subs)
+        rows = rows_of(text, offset)
+        structure = Structure(text)
+        items, subs = structure.read(rows)
+        return _Writer(text, offset).write(items, subs, structure.numbered(items))
     except Flaw as flaw:
         raise ProgramError(flaw.what, position=text.position(flaw.at), hint=flaw.hint) from None
-
-
-def _rows(text: ProgramText, offset: int) -> list[Row]:
-    rows: list[Row] = []
-    number = text.position(offset).line if offset else 1
-    size = len(text)
-    percents = 0
-    while offset < size:
-        end = text.next_line(offset)
-        line = text.content[offset : text.line_end(offset)].decode("latin-1")
-        if line.strip() == "%":
-            percents += 1
-            if percents == 2 or any(row.text.strip() for row in rows):
-                break
-        else:
-            rows.append(Row(offset, number, line, end))
-        offset, number = end, number + 1
-    return rows
-
-
-class _Structure:
-    """Find what stands inside what."""
-
-    def __init__(self, text: ProgramText) -> None:
-        self._text = text
-        self._subs: dict[str, Block] = {}
-        self._open: list[Block] = []
-
-    def read(self, rows: list[Row]) -> tuple[list[Item], dict[str, Block]]:
-        main: list[Item] = []
-        for row in rows:
-            inside = self._open[-1].bodies[-1][2] if self._open else main
-            if _PROGRAM_NUMBER.fullmatch(_COMMENT.sub("", row.text)):
-                continue
-            if not _IS_CODE.search(row.text) or not _is_code(row.text):
-                _extend(inside, row)
-                continue
-            line = _read(row)
-            if line.o_word is None:
-                inside.append((row, line))
-            else:
-                self._take(row, line, line.o_word, inside)
-        if self._open:
-            block = self._open[-1]
-            raise Flaw(
-                block.row.offset + block.word.at,
-                f"O{block.word.label} {block.word.keyword} has no end",
-                f"Add O{block.word.label} {_ENDS[block.word.keyword]}.",
-            )
-        return main, self._subs
-
-    def _take(self, row: Row, line: Line, word: OWord, inside: list[Item]) -> None:
-        top = self._open[-1] if self._open else None
-        same = top is not None and top.word.label == word.label
-        match word.keyword:
-            case "while" if same and top is not None and top.word.keyword == "do":
-                self._close(row, word)
-            case "if" | "while" | "repeat" | "do" | "sub":
-                block = Block(word, row, line)
-                block.bodies.append((word, row, []))
-                if word.keyword == "sub":
-                    if top is not None:
-                        raise Flaw(
-                            row.offset + word.at, "a sub-program inside something else", "Move it out."
-                        )
-                    if word.label in self._subs:
-                        raise Flaw(
-                            row.offset + word.at,
-                            f"a second sub-program O{word.label}",
-                            "Name it differently.",
-                        )
-                    self._subs[word.label] = block
-                else:
-                    inside.append(block)
-                self._open.append(block)
-            case "elseif" | "else":
-                if not same or top is None or top.word.keyword != "if":
-                    raise Flaw(
-                        row.offset + word.at,
-                        f"O{word.label} {word.keyword} without its IF",
-                        "Numbers of O-words that belong together are equal.",
-                    )
-                top.bodies.append((word if word.keyword == "elseif" else None, row, []))
-            case "endif" | "endwhile" | "endrepeat" | "endsub":
-                if not same or top is None or _ENDS[top.word.keyword] != word.keyword:
-                    raise Flaw(
-                        row.offset + word.at,
-                        f"O{word.label} {word.keyword} without its beginning",
-                        "Numbers of O-words that belong together are equal.",
-                    )
-                self._close(row, word)
-            case _:
-                inside.append((row, line))
-
-    def _close(self, row: Row, word: OWord) -> None:
-        block = self._open.pop()
-        block.end, block.end_row = word, row
-
-
-def _is_code(text: str) -> bool:
-    """Tell whether a line holds more than words, its comments apart."""
-    bare = _COMMENT.sub("", text)
-    if _IS_CODE.search(bare):
-        return True
-    return any(
-        _TEXTS.match(found[0][1:]) and "msg" not in found[0].lower()[:6]
-        for found in _COMMENT.finditer(text)
-        if found[0][0] == "("
-    )
-
-
-def _extend(inside: list[Item], row: Row) -> None:
-    if not row.text.strip():
-        if inside and isinstance(inside[-1], Span) and inside[-1].end == row.offset:
-            inside[-1].end = row.end
-        return
-    if inside and isinstance(inside[-1], Span) and inside[-1].end == row.offset:
-        inside[-1].end = row.end
-    else:
-        inside.append(Span(row, row.end))
-
-
-def _read(row: Row) -> Line:
-    try:
-        return LineReader(row.text, row.number).read()
-    except Flaw as flaw:
-        raise Flaw(row.offset + flaw.at, flaw.what, flaw.hint) from None
 
 
 class _Writer:
@@ -263,8 +78,10 @@ class _Writer:
         self._crossed: set[int] = set()
         self._in_sub = False
 
-    def write(self, items: list[Item], subs: dict[str, Block]) -> Program:
+    def write(self, items: list[Item], subs: dict[str, Block], numbered: dict[str, list[Item]]) -> Program:
         functions = {"": self._function("", items, None)}
+        for number, body in numbered.items():
+            functions[numbered_label(number)] = self._function(numbered_label(number), body, None)
         self._in_sub = True
         for label, block in subs.items():
             functions[label] = self._function(label, block.bodies[0][2], block)
@@ -305,20 +122,37 @@ class _Writer:
 
     def _statement(self, row: Row, line: Line) -> None:
         put = self._out.put
-        message = self._message(line)
         for text in self._texts(row, line):
             put(f"yield says({row.number}, {row.offset}, {text})")
-        for target, _ in line.settings:  # a name is there, with 0, as soon as its line is read
-            own = target.removesuffix(" = {}")
-            if own.startswith("N[") and any(own in each.python for _, each in line.settings):
-                put(f"if {own[2:-1]} not in N:", f"    {own} = 0.0")
+        codes = {code.python for letter, code, _ in line.words if letter == "M"}
+        if codes & {CALLS, RETURNS}:
+            self._numbered(row, line)
+            return
+        if WAITS in codes:
+            self._waits(row, line)
         keeping = [word for word in line.words if word[0] == "M" and word[1].python in KEEPING]
         words = ", ".join(
             f"({letter!r}, {value.python}, {row.offset + at})"
             for letter, value, at in line.words
             if (letter, value, at) not in keeping
         )
-        if len(line.settings) == 1 and not line.words:
+        self._settings(line, words)
+        if words:
+            given = "w" if line.settings else f"({words},)"
+            put(f"yield block({row.number}, {row.offset}, {given}, {self._message(line)})")
+        for _, code, at in keeping:
+            put(f"yield modes({KEEPING[code.python]}, {row.number}, {row.offset + at})")
+        if line.o_word is not None:
+            self._o_word(row, line.o_word)
+
+    def _settings(self, line: Line, words: str) -> None:
+        """Write the settings of a line, all values of the line, those of its words too, before any of them."""
+        put = self._out.put
+        for target, _ in line.settings:  # a name is there, with 0, as soon as its line is read
+            own = target.removesuffix(" = {}")
+            if own.startswith("N[") and any(own in each.python for _, each in line.settings):
+                put(f"if {own[2:-1]} not in N:", f"    {own} = 0.0")
+        if len(line.settings) == 1 and not words:
             target, value = line.settings[0]
             put(target.replace("{}", value.python, 1) if "{}" in target else target)
         elif line.settings:
@@ -326,22 +160,55 @@ class _Writer:
             if words:
                 put(f"w = ({words},)")
             put(*(target.replace("{}", f"t[{n}]", 1) for n, (target, _) in enumerate(line.settings)))
-            if words:
-                put(f"yield block({row.number}, {row.offset}, w, {message})")
-        elif words:
-            put(f"yield block({row.number}, {row.offset}, ({words},), {message})")
-        put(
-            *(
-                f"yield modes({KEEPING[code.python]}, {row.number}, {row.offset + at})"
-                for _, code, at in keeping
-            )
+
+    def _waits(self, row: Row, line: Line) -> None:
+        """Write the wait of an M66; its line is a block of words after that."""
+        codes = [at for letter, code, at in line.words if letter == "M" and code.python == WAITS]
+        if len(codes) > 1:
+            raise Flaw(row.offset + codes[1], "M66 twice in a line", "Write one in a line.")
+        words = "".join(f"({letter!r}, {value.python}), " for letter, value, _ in line.words if takes(letter))
+        self._out.put(
+            f"q = asked(({words}))",
+            f"yield drain({row.number})",
+            "q = look(begun(q))",
+            "while q:",
+            "    yield WAIT",
+            "    q = look(q)",
         )
-        if line.o_word is not None:
-            self._o_word(row, line.o_word)
+
+    def _numbered(self, row: Row, line: Line) -> None:
+        """Write a call of a sub-program by M98, or the return from one by M99."""
+        (code, called, at), *others = line.words
+        letters = [letter for letter, _, _ in others]
+        calls = called.python == CALLS
+        if (
+            code != "M"
+            or line.settings
+            or len(set(letters)) < len(letters)
+            or set(letters) - set("PL" * calls)
+        ):
+            raise Flaw(
+                row.offset + at,
+                "M98 or M99 with other words",
+                "Write M98 P100 L2 or M99 in a line of its own.",
+            )
+        if not calls:
+            if self._in_sub:
+                raise Flaw(row.offset + at, "M99 in a sub-program of SUB", "Write RETURN or ENDSUB.")
+            self._out.put("return None")
+            return
+        given = {letter: value.python for letter, value, _ in others}
+        if "P" not in given:
+            raise Flaw(row.offset + at, "M98 without P", "Add P and the number of the sub-program.")
+        self._numbers += 1
+        number, rounds = f"p{self._numbers}", f"r{self._numbers}"
+        self._out.put(f"{number}, {rounds} = whole(P={given['P']}), whole(L={given.get('L', '1.0')})")
+        with self._out.block(f"while {rounds} > 0:"):
+            self._out.put(f"{rounds} -= 1", f"yield call_number({number}, {row.number})")
 
     def _message(self, line: Line) -> str:
         for comment in line.comments:
-            if (found := _TEXTS.match(comment)) and found[1].lower() == "msg":
+            if (found := TEXTS.match(comment)) and found[1].lower() == "msg":
                 return repr(found[2].strip())
         return "''"
 
@@ -349,7 +216,7 @@ class _Writer:
         """Return Python of the texts of DEBUG and PRINT, with the values of parameters in them."""
         texts: list[str] = []
         for comment in line.comments:
-            found = _TEXTS.match(comment)
+            found = TEXTS.match(comment)
             if found is None or (found[1].lower() == "msg" and (line.words or line.settings)):
                 continue
             parts: list[str] = []

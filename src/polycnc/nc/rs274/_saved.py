@@ -25,6 +25,7 @@ class SavedLevel:
     names: dict[str, object]
     kept: tuple[tuple[tuple[str, float], ...], ...]
     goes_back: tuple[int, int, int] | None
+    shares: bool
 
 
 @dataclass(frozen=True, slots=True)

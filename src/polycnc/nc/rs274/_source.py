@@ -4,18 +4,28 @@ from __future__ import annotations
 
 from collections.abc import Callable, Generator, Sequence
 from dataclasses import dataclass
+from enum import Enum
 from pathlib import Path
 from typing import Protocol, TypeAlias
 
 from polycnc.errors import ProgramError, UsageError
 from polycnc.language import Traced, frame_of, line_of, names_of
+from polycnc.machine import Machine
 from polycnc.nc.records._block_records import Call
+from polycnc.nc.rs274 import _inputs as inputs
 from polycnc.nc.rs274._functions import FUNCTIONS, NumberError
 from polycnc.nc.rs274._kept_modes import Words, modes_of, words_back
 from polycnc.nc.rs274._parameters import LAST_LOCAL, Parameters
-from polycnc.nc.rs274._program import Program
+from polycnc.nc.rs274._program import Program, numbered_label
 from polycnc.nc.rs274._saved import SavedLevel, SavedProgram
-from polycnc.nc.sources._block_source import EndSource, Pause, SourceItem, TextSpan, WordsBlock
+from polycnc.nc.sources._block_source import (
+    Drain,
+    EndSource,
+    Pause,
+    SourceItem,
+    TextSpan,
+    WordsBlock,
+)
 from polycnc.nc.text._program import ProgramText
 from polycnc.nc.text._scan_plain import Word
 
@@ -25,7 +35,9 @@ LONGEST_LOOP_PAUSES = 2_500
 _LARGEST = 1e12
 _PARAMETERS = ("L", "N")
 _PROBLEMS = (NumberError, KeyError, OverflowError, ValueError, UsageError)
-Suspended: TypeAlias = Generator["SourceItem | CallRequest | ModesRequest", None, "float | None"]
+Suspended: TypeAlias = Generator[
+    "SourceItem | CallRequest | ModesRequest | WaitRequest", None, "float | None"
+]
 Function: TypeAlias = Callable[[list[float], dict[str, float]], Suspended]
 
 
@@ -33,6 +45,12 @@ class Owner(Protocol):
     """What a source needs of its language."""
 
     parameters: Parameters
+    fast_forward: bool
+
+    @property
+    def machine(self) -> Machine:
+        """The machine, with its inputs and its clock."""
+        ...
 
     def skips(self, level: int) -> bool:
         """Tell whether lines with a skip mark of this number are left out."""
@@ -45,12 +63,16 @@ class Owner(Protocol):
 
 @dataclass(frozen=True, slots=True)
 class CallRequest:
-    """What an O-word asks for: the program of a file, its sub-program, the arguments, and the line of the call."""
+    """What an O-word asks for: the program of a file, its sub-program, the arguments, and the line of the call.
+
+    A sub-program of M98 `shares` the numbered parameters of what calls it.
+    """
 
     program: Program
     label: str
     arguments: tuple[float, ...]
     line: int
+    shares: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -62,11 +84,18 @@ class ModesRequest:
     offset: int
 
 
+class WaitRequest(Enum):
+    """What M66 asks for until its input is as it wants it: to be asked again in the next cycle."""
+
+    WAIT = "wait"
+
+
 @dataclass(slots=True)
 class _Level:
     """A program or sub-program under way: its own parameters, and the generator that gives its items.
 
-    `kept` are the modes that M70 or M73 has kept; with `goes_back` they are in force again when it returns.
+    `kept` are the modes that M70 or M73 has kept; with `goes_back` they are in force again when it returns. A level
+    that `shares` has the numbered parameters of the one before.
     """
 
     program: Program
@@ -77,6 +106,7 @@ class _Level:
     run: Suspended
     kept: tuple[Words, ...] = ()
     goes_back: ModesRequest | None = None
+    shares: bool = False
 
 
 class RunningProgram:
@@ -102,6 +132,13 @@ class RunningProgram:
             "times": lambda number: max(0, round(number)),
             "label": lambda number: str(round(number)),
             "call": self._asked,
+            "call_number": self._asked_number,
+            "whole": _whole,
+            "drain": self._drain,
+            "asked": lambda words: inputs.asked(owner.machine, words),
+            "begun": lambda wait: inputs.begun(owner.machine, wait),
+            "look": self._look,
+            "WAIT": WaitRequest.WAIT,
             "modes": ModesRequest,
         }
         self._functions: dict[int, tuple[Traced[int], Function]] = {}
@@ -121,8 +158,8 @@ class RunningProgram:
         """
         if self._over:
             return EndSource.END
-        item: SourceItem | CallRequest | ModesRequest | None = None
-        while item is None or isinstance(item, CallRequest | ModesRequest):
+        item: SourceItem | CallRequest | ModesRequest | WaitRequest | None = None
+        while item is None or isinstance(item, CallRequest | ModesRequest | WaitRequest):
             item = None
             if self._back:
                 return self._back.pop(0)
@@ -134,10 +171,13 @@ class RunningProgram:
                     return None
                 level = self._levels[-1]
                 if level.goes_back is not None:
-                    self._put_back(level, level.goes_back)
+                    self._restore_modes(level, level.goes_back)
                 self._return(ended.value)
             except _PROBLEMS as error:
                 raise self._refused(error) from None
+            if item is WaitRequest.WAIT:
+                self._pauses = 0  # this one ends by itself
+                return Pause.PAUSE
             if isinstance(item, CallRequest):
                 self._enter(item)
             elif isinstance(item, ModesRequest):
@@ -182,12 +222,15 @@ class RunningProgram:
         numbered = [0.0, *asked.arguments, *[0.0] * (LAST_LOCAL - len(asked.arguments))]
         calls = (*caller.calls, Call(caller.program.text.name, asked.line, 0))
         self._owner.parameters.level += 1
-        self._begin(asked.program, asked.label, numbered, calls)
+        self._begin(asked.program, asked.label, caller.numbered if asked.shares else numbered, calls)
+        self._levels[-1].shares = asked.shares
 
     def _return(self, value: float | None) -> None:
-        self._levels.pop()
+        level = self._levels.pop()
         parameters = self._owner.parameters
         parameters.level -= 1
+        if level.shares:
+            return
         parameters.names["_value"] = 0.0 if value is None else value
         parameters.names["_value_returned"] = float(value is not None)
 
@@ -199,12 +242,12 @@ class RunningProgram:
         """
         level = self._levels[-1]
         if asked.code == 72:
-            self._put_back(level, asked)
+            self._restore_modes(level, asked)
             return
         level.kept = () if asked.code == 71 else modes_of(self._owner.parameters.state)
         level.goes_back = asked if asked.code == 73 else None
 
-    def _put_back(self, level: _Level, asked: ModesRequest) -> None:
+    def _restore_modes(self, level: _Level, asked: ModesRequest) -> None:
         text = level.program.text
         try:
             if not level.kept:
@@ -233,6 +276,7 @@ class RunningProgram:
                 {name: value for name, value in names_of(level.run).items() if name not in _PARAMETERS},
                 level.kept,
                 None if (asked := level.goes_back) is None else (asked.code, asked.line, asked.offset),
+                level.shares,
             )
             for level in self._levels
         )
@@ -249,8 +293,10 @@ class RunningProgram:
         self.close()
         self._levels.clear()
         for level, (program, traced) in zip(saved.levels, codes, strict=True):
-            self._begin(program, level.label, list(level.numbered), level.calls)
+            numbered = self._levels[-1].numbered if level.shares else list(level.numbered)
+            self._begin(program, level.label, numbered, level.calls)
             made = self._levels[-1]
+            made.shares = level.shares
             made.named.update(level.named)
             made.kept = level.kept
             made.goes_back = None if level.goes_back is None else ModesRequest(*level.goes_back)
@@ -287,6 +333,19 @@ class RunningProgram:
         level = self._levels[-1]
         return WordsBlock((), line, offset, text, text=level.program.text, calls=level.calls)
 
+    def _drain(self, line: int) -> Drain:
+        level = self._levels[-1]
+        return Drain(line, level.program.text, level.calls)
+
+    def _look(self, wait: inputs.Looking) -> inputs.Looking | None:
+        """Look at the input of an M66; return the wait as it goes on, None where it has its answer."""
+        owner = self._owner
+        found = inputs.look(owner.machine, wait, at_once=owner.fast_forward)
+        if isinstance(found, float):
+            owner.parameters.answer(found)
+            return None
+        return found
+
     def _asked(self, label: str, arguments: tuple[float, ...], line: int) -> CallRequest:
         level = self._levels[-1]
         found = [each for each in (level.program, self._main) if label in each.functions]
@@ -296,11 +355,27 @@ class RunningProgram:
                 f"there is no sub-program O<{label}>",
                 f"Write O<{label}> SUB in this file, or put it into {label}.ngc beside the program or in --root.",
             )
-        if len(level.calls) >= MOST_LEVELS:
+        self._check_depth()
+        return CallRequest(program, label, arguments, line)
+
+    def _asked_number(self, number: int, line: int) -> CallRequest:
+        level = self._levels[-1]
+        label = numbered_label(str(number))
+        found = [each for each in (level.program, self._main) if label in each.functions]
+        program = found[0] if found else self._owner.file_of(str(number), self._main.text)
+        if program is None or label not in program.functions:
+            raise NumberError(
+                f"there is no sub-program O{number} that ends with M99",
+                f"Write O{number} and M99 in lines of their own, here or in {number}.ngc beside the program.",
+            )
+        self._check_depth()
+        return CallRequest(program, label, (), line, shares=True)
+
+    def _check_depth(self) -> None:
+        if len(self._levels[-1].calls) >= MOST_LEVELS:
             raise NumberError(
                 f"sub-programs are nested more than {MOST_LEVELS} deep", "Does one call itself?"
             )
-        return CallRequest(program, label, arguments, line)
 
     def _refused(self, error: Exception) -> ProgramError:
         """Return an error with the place in the program that it came from; nothing more is asked for."""
@@ -322,6 +397,14 @@ class RunningProgram:
             case UsageError():
                 return ProgramError(error.what, position=position, hint=error.hint)
         return ProgramError("the number is too large", position=position, hint="Look at the expression.")
+
+
+def _whole(**words: float) -> int:
+    """Return the number of a word, which is a whole one from 0 up."""
+    ((letter, value),) = words.items()
+    if not (0.0 <= value < _LARGEST and value == round(value)):
+        raise NumberError(f"{letter}{value:g} is no whole number from 0 up", "Look at the expression.")
+    return round(value)
 
 
 def sub_program_file(name: str, main: ProgramText, folders: tuple[Path, ...]) -> Path | None:

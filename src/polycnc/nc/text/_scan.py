@@ -129,7 +129,7 @@ def word_columns(blocks: int = 65536, words: int = 0) -> WordColumns:
     )
 
 
-def scan_rules(rules: TextRules, *, open_words: bool = False) -> ScanRules:
+def scan_rules(rules: TextRules) -> ScanRules:
     """Turn the text rules of a dialect into the tables of the compiled scanner."""
     classes = np.full(256, OTHER, dtype=np.uint8)
     for members, kind in (
@@ -149,7 +149,9 @@ def scan_rules(rules: TextRules, *, open_words: bool = False) -> ScanRules:
     statement = np.zeros(256, dtype=np.uint8)
     statement[list(rules.statement_characters.encode("ascii") + b"=")] = 1
     powers = np.array([float(10**exponent) for exponent in range(_MAX_PLACES + 1)])
-    return ScanRules(classes, statement, powers, rules.unclosed_comments, rules.line_numbers, open_words)
+    return ScanRules(
+        classes, statement, powers, rules.unclosed_comments, rules.line_numbers, open_words=False
+    )
 
 
 def open_text(content: bytes, begin: int) -> str:

@@ -100,12 +100,13 @@ def scan_words(text: ProgramText, offset: int, line: int, rules: TextRules) -> B
     return block
 
 
-def scan_blocks(text: ProgramText, rules: TextRules, offset: int = 0, line: int = 1) -> Iterator[Block]:
-    """Read all blocks from byte `offset` on, leaving out blank lines.
+def scan_blocks(text: ProgramText, rules: TextRules) -> Iterator[Block]:
+    """Read all blocks, leaving out blank lines.
 
     Raises:
         ProgramError: as `scan_block`, when the block is reached.
     """
+    offset, line = 0, 1
     while offset < len(text):
         block = scan_block(text, offset, line, rules)
         if not block.is_blank:

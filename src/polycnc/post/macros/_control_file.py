@@ -20,6 +20,7 @@ from polycnc.post.macros._control_symbols import ControlFlaw, read_symbols
 from polycnc.post.macros._elements import Assignment, Text
 from polycnc.post.macros._format import read_format
 from polycnc.post.macros._macro import If, Statement, read_macro
+from polycnc.post.macros._parameters import NO_DIALECT
 from polycnc.post.macros._run import MacroRun, Write
 from polycnc.post.macros._symbols import Symbols
 
@@ -32,7 +33,9 @@ CONTROLS: tuple[str, ...] = (
     "fanuc-mill",
     "grbl",
     "haas-mill",
+    "heidenhain",
     "linuxcnc-mill",
+    "siemens-840d",
 )
 """Names of the control files that come with polycnc."""
 
@@ -214,11 +217,15 @@ def _compiled(
 
 def _check_dialect(tables: ControlTables, locator: Locator) -> None:
     """Refuse a dialect that there is not: the program could not be verified."""
+    if tables.parameters.dialect == NO_DIALECT:
+        return
     try:
         load_dialect(tables.parameters.dialect)
     except UsageError as error:
         raise ConfigurationError(
-            error.what, hint=error.hint, position=locator.position(("parameters", "dialect"))
+            error.what,
+            hint=f'{error.hint} Write "{NO_DIALECT}" for a language that nothing here reads.',
+            position=locator.position(("parameters", "dialect")),
         ) from None
 
 
@@ -282,7 +289,8 @@ def _all_flaws(flaws: list[tuple[str, Flaw]], places: _MacroPlaces) -> Configura
         also = [*also[:_SHOWN_FLAWS], f"and {len(also) - _SHOWN_FLAWS} more"]
     if also and hint:
         hint = f"on line {position.line}: {hint}"
-    return ConfigurationError(what, hint="\n".join([*also, hint]).strip("\n"), position=position)
+    parts = tuple(ConfigurationError(text, hint=more, position=place) for place, text, more in found)
+    return ConfigurationError(what, hint="\n".join([*also, hint]).strip("\n"), position=position, parts=parts)
 
 
 _VALUE = re.compile(r"""(?:[A-Za-z0-9_-]+|"[^"]*"|'[^']*')[ \t]*=[ \t]*('''|\"""|'|")(\r?\n)?""")

@@ -12,9 +12,6 @@ from polycnc.post.macros._expression import FUNCTIONS, Expression, read_value
 from polycnc.post.macros._symbols import LINE_TEXTS
 from polycnc.units import whole
 
-SPECIAL = "!$@&<>"
-"""Characters that stand for themselves only within double quotes."""
-
 
 @dataclass(frozen=True, slots=True)
 class Text:

@@ -20,6 +20,9 @@ _PARALLEL = 1e-6
 Finite = Annotated[float, Field(allow_inf_nan=False)]
 Triple = tuple[Finite, Finite, Finite]
 
+NO_DIALECT = "none"
+"""What a control file names as its dialect if nothing here reads its programs."""
+
 
 class RotaryAxis(StrictModel):
     """A rotary axis of a five-axis machine."""
@@ -97,7 +100,11 @@ def _parallel(a: Triple, b: Triple) -> bool:
 class MotionParameters(StrictModel):
     """How moves of a tool path become moves of the control."""
 
-    dialect: str = Field(default="din", description="Dialect in which the virtual machine reads the program.")
+    dialect: str = Field(
+        default="din",
+        description='Dialect in which the virtual machine reads the program; "none": nothing here reads it, and '
+        "`--verify` refuses.",
+    )
     machine: str = Field(default="mill3", description="Machine on which `--verify` runs the program.")
     extension: str = Field(default=".nc", description="File extension of a program, if none is named.")
     arc_axis: Literal["auto", "counterclockwise", "clockwise"] = Field(

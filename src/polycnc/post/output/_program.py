@@ -1,7 +1,7 @@
 """Drive a control file's macros by the records of a tool path: each event calls its macro, once, in order.
 
 The driver keeps what events need to know of one another: where the tool is, feed, tool, spindle, cycle. What it
-gives to macros is told in `_events`. Moves and holes have files of their own.
+gives to macros is documented in `_events`. Moves and holes have files of their own.
 """
 
 from __future__ import annotations
@@ -14,6 +14,7 @@ from typing import Any
 from polycnc.post.macros._control_file import ControlFile
 from polycnc.post.macros._events import MOST_NUMBERS, word_macros
 from polycnc.post.output._drilling import Drilling
+from polycnc.post.output._idle_macros import idle_macros
 from polycnc.post.output._motion import Motion
 from polycnc.post.output._output import Output
 from polycnc.post.tool_path._course import Act, Course, CourseError, Hole, Straight, Turn
@@ -138,6 +139,8 @@ def post_program(
     motion = driver.motion
     if motion.tangency.mostly_kinked:
         output.remark(motion.tangency.first_kink, motion.tangency.text())
+    for text in idle_macros(control, motion.arcs):
+        output.remark(0, text)
     return PostSummary(
         blocks=output.blocks,
         records=records,

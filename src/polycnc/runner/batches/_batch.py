@@ -7,7 +7,6 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import islice
 from pathlib import Path
-from types import TracebackType
 from typing import Any
 
 from polycnc.errors import UsageError
@@ -66,9 +65,7 @@ class BatchResult:
     def __enter__(self) -> BatchResult:
         return self
 
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
+    def __exit__(self, *error: object) -> None:
         self.close()
 
     def __del__(self) -> None:
@@ -266,10 +263,4 @@ def _read(path: Path) -> tuple[bytes, str]:
 def _plain(setup: Setup) -> tuple[object, ...]:
     """Return what tells a setup from others, the same in every process."""
     dialect = setup.dialect.model_dump_json() if isinstance(setup.dialect, Dialect) else setup.dialect
-    return (
-        setup.machine.model_dump_json(),
-        dialect,
-        setup.override_percent,
-        setup.check_only,
-        setup.detail,
-    )
+    return (setup.machine.model_dump_json(), dialect, setup.override_percent, setup.check_only, setup.detail)

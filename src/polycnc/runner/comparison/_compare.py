@@ -23,13 +23,7 @@ from polycnc.runner.comparison._both import view_of_both
 from polycnc.runner.comparison._compared import Compared, PathDeviation
 from polycnc.runner.comparison._distance import PRECISION_MM, Boxes, greatest_distance, in_one_order
 from polycnc.runner.comparison._first_difference import BlockDifference, first_difference
-from polycnc.runner.comparison._path import (
-    THINNING_MM,
-    Floats,
-    Indices,
-    Path,
-    PathCollector,
-)
+from polycnc.runner.comparison._path import THINNING_MM, Floats, Indices, Path, PathCollector
 from polycnc.runner.view import Track, TrackCollector, View
 
 DEFAULT_TOLERANCE_MM = 0.01

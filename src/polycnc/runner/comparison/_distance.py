@@ -44,9 +44,7 @@ class Boxes:
         self.high = np.concatenate([level[1] for level in levels])
 
 
-def greatest_distance(
-    start: Floats, end: Floats, boxes: Boxes, precision: float = PRECISION_MM
-) -> tuple[float, int, float]:
+def greatest_distance(start: Floats, end: Floats, boxes: Boxes) -> tuple[float, int, float]:
     """Return how far the segments from `start` to `end` go from those in `boxes`, on which, and at which part of it."""
     distance, segment, part = farthest(
         np.ascontiguousarray(start),
@@ -55,7 +53,7 @@ def greatest_distance(
         boxes.end,
         boxes.low,
         boxes.high,
-        precision,
+        PRECISION_MM,
     )
     return float(distance), int(segment), float(part)
 

@@ -63,8 +63,7 @@ def _entries(text: str, file: str) -> dict[str, Entry]:
         import yaml
     except ImportError:
         raise UsageError(
-            "a FluidNC configuration is YAML, and PyYAML is not installed",
-            hint="pip install 'polycnc[yaml]'",
+            "a FluidNC configuration is YAML, and PyYAML is not installed", hint="pip install 'polycnc[yaml]'"
         ) from None
     try:
         tree = yaml.compose(text, Loader=yaml.SafeLoader)

@@ -18,14 +18,7 @@ from polycnc.runner.view._film import Film, film_of
 from polycnc.runner.view._listing import Listing
 from polycnc.runner.view._motion import DERIVATIVES
 from polycnc.runner.view._part_frame import turning_axes, with_part_frame
-from polycnc.runner.view._picture import (
-    Axes,
-    columns_of,
-    kinematics,
-    places,
-    tool_shapes,
-    zero_of_work,
-)
+from polycnc.runner.view._picture import Axes, columns_of, kinematics, places, tool_shapes, zero_of_work
 from polycnc.runner.view._track import Track
 from polycnc.web import Page
 
@@ -204,11 +197,7 @@ def _about(
             "name": beside.name,
             "own": beside.own_name,
             "marks": [
-                {
-                    "text": mark.text,
-                    "place": _place(mark.position, axes),
-                    "time_s": mark.time_s,
-                }
+                {"text": mark.text, "place": _place(mark.position, axes), "time_s": mark.time_s}
                 for mark in beside.marks
             ],
         }

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from polycnc.cnc import ProgramRun, RunOptions
+from polycnc.cnc import ProgramRun, RunOptions, let_pass
 from polycnc.errors import ProgramError
 from polycnc.machine import Machine, MachineConfig
 from polycnc.nc import Dialect, Language, ProgramText
@@ -55,7 +55,7 @@ def preview(
     options = RunOptions(stands_at_stops=False, collect_errors=True)
     run = ProgramRun(
         Machine(config, record_cycles=record.cycles), text, dialect, language=language, config=config,
-        library=(texts or {}).get, options=options,
+        library=(texts or {}).get, options=options, on_passed=let_pass,
         rows=lambda piece, tags: record.take(piece, tags, run.channel.records),
     )  # fmt: skip
     errors: list[ProgramError] = []

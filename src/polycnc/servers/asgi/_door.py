@@ -12,8 +12,8 @@ import uvicorn
 from starlette.types import ASGIApp
 
 from polycnc.errors import UsageError
+from polycnc.servers.asgi._connection import Refuse, refusing
 
-_MOST_CONNECTIONS = 200
 _END_S = 0.5
 
 
@@ -30,11 +30,9 @@ class _Server(uvicorn.Server):
 
 
 class AsgiDoor:
-    """Serve an application on one port; `name` is the door's, `http` a protocol whose connections bound themselves."""
+    """Serve an application on one port; `name` is the door's, `refuse` its form of what a connection refuses."""
 
-    def __init__(
-        self, name: str, app: ASGIApp, address: str, port: int, *, http: type[asyncio.Protocol] | None = None
-    ) -> None:
+    def __init__(self, name: str, app: ASGIApp, address: str, port: int, refuse: Refuse) -> None:
         self._name = name
         self._address = address
         self._port = port
@@ -46,8 +44,7 @@ class AsgiDoor:
                 lifespan="off",
                 ws="websockets-sansio",
                 ws_max_size=1 << 16,
-                http=http or "auto",
-                limit_concurrency=_MOST_CONNECTIONS if http is None else None,
+                http=refusing(refuse),
                 timeout_keep_alive=30,
                 timeout_graceful_shutdown=None,
                 server_header=False,

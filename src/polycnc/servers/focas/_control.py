@@ -145,7 +145,9 @@ class FocasControl:
         control = self.control
         if name and not name.endswith(("/", ":")):
             return Status(DATA, _BAD_NAME)
-        busy = control.transfer is not None or control.programs.background_edit or control.transfers_blocked
+        busy = (
+            control.transfer is not None or control.programs.background_edit or control.power.blocks_transfers
+        )
         if busy or control.mode is PowerMateMode.MDI:
             return Status(_BUSY)
         if control.programs.key_protects:

@@ -38,7 +38,7 @@ _DECIMALS = 9
 
 def _macro(view: View, number: int) -> float | None:
     if number in _LOCALS:
-        return view.control.local_variable(number)
+        return view.control.custom_macros.local(number)
     try:
         return view.control.macros.get(number)
     except KeyError:
@@ -302,7 +302,7 @@ def _increments(asked: Mapping[str, int], decimals: int) -> int:
 
 
 def _offset_decimals(view: View) -> int:
-    return view.control.increment.decimals + int(view.control.inch_input)
+    return view.control.units.increment.decimals + int(view.control.units.inch_input)
 
 
 @answers(0x08)
@@ -344,8 +344,8 @@ def read_work_offset(view: View, request: Request) -> Content:
     values = control.control.offsets.get(name, {})
     made = []
     for axis in axes_of(view, asked):
-        units = control.input_scale(axis)
-        made.append(Value8(units.counts(values.get(control.axis_name(axis), 0.0)), units.decimals))
+        units = control.units.input_scale(axis)
+        made.append(Value8(units.counts(values.get(control.units.axis_name(axis), 0.0)), units.decimals))
     return padded(made, view, asked)
 
 
@@ -356,11 +356,11 @@ def write_work_offset(view: View, request: Request) -> Content:
     axes = axes_of(view, asked)
     values = {}
     for axis, each in zip(axes, given_each(request, len(axes)), strict=True):
-        units = control.input_scale(axis)
+        units = control.units.input_scale(axis)
         count = _increments(each, units.decimals)
-        if abs(count) > control.increment.offset_limit:
+        if abs(count) > control.units.increment.offset_limit:
             raise RefusedError(DATA)
-        values[control.axis_name(axis)] = units.value(count)
+        values[control.units.axis_name(axis)] = units.value(count)
     control.control.offsets.set(name, values)
     return None
 

@@ -111,9 +111,9 @@ def delete(view: View, request: Request) -> Content:
 
 def _delete(view: View, number: int) -> None:
     control = view.control
-    if number not in control.programs or number == control.selected:
+    if number not in control.programs or number == control.programs.selected:
         raise RefusedError(DATA)
-    if control.transfer is not None or control.transfers_blocked or control.programs.background_edit:
+    if control.transfer is not None or control.power.blocks_transfers or control.programs.background_edit:
         raise RefusedError(REJECTED)
     if control.programs.key_protects or control.programs.parameter_protects(number):
         raise RefusedError(PROTECTED)
@@ -252,7 +252,7 @@ def select_main(view: View, request: Request) -> Content:
 @answers(0xB9)
 def main_path(view: View, request: Request) -> Content:
     """Return the path of the selected program."""
-    return {"path": text(_path(view.control.selected), _PATH)}
+    return {"path": text(_path(view.control.programs.selected), _PATH)}
 
 
 @answers(0xF0)

@@ -102,7 +102,7 @@ def _type_of(view: View, alarm: Alarm) -> int:
 def alarm_bits(view: View, request: Request) -> Content:
     """Return the groups of the alarms that are on."""
     if view.profile.old_states:
-        return {"alarms": int(view.control.alarm_bits)}
+        return {"alarms": int(view.control.power.alarm_bits)}
     later = 0
     for alarm in shown(view.control.control.alarms.active):
         later |= 1 << _type_of(view, alarm)
@@ -122,7 +122,7 @@ def alarms(view: View, request: Request) -> Content:
     if not (ALL <= kind <= view.profile.last_alarm_type and mode in _TEXTS):
         raise RefusedError(ATTRIBUTE)
     rows = []
-    names = [view.control.axis_name(axis) for axis in range(1, view.control.axes + 1)]
+    names = [view.control.units.axis_name(axis) for axis in range(1, view.control.axes + 1)]
     for alarm in shown(view.control.control.alarms.active):
         number = _type_of(view, alarm)
         if kind in (ALL, number):
@@ -173,9 +173,9 @@ def positions(view: View, request: Request) -> Content:
     control = view.control
     made = []
     for axis in axes_of(view, asked):
-        units = control.output_scale(axis) if name == "machine" else control.input_scale(axis)
+        units = control.units.output_scale(axis) if name == "machine" else control.units.input_scale(axis)
         counts = (
-            control.skip_positions[axis - 1] if name == _SKIP else getattr(view.positions[axis - 1], name)
+            control.skip.positions[axis - 1] if name == _SKIP else getattr(view.positions[axis - 1], name)
         )
         made.append(Value8(counts, units.decimals))
     return padded(made, view, asked)
@@ -184,7 +184,7 @@ def positions(view: View, request: Request) -> Content:
 @answers(0x24)
 def feed(view: View, request: Request) -> Content:
     """Return the actual feed: mm/min, with inch input 0.01 inch/min."""
-    return {"feed": Value8(view.control.positions.feed(), 2 if view.control.inch_input else 0)}
+    return {"feed": Value8(view.control.positions.feed(), 2 if view.control.units.inch_input else 0)}
 
 
 @answers(0x25)
@@ -196,7 +196,7 @@ def spindle_speed(view: View, request: Request) -> Content:
 @answers(0x89)
 def axis_names(view: View, request: Request) -> Content:
     """Return the names of the axes."""
-    names = (view.control.axis_name(axis) for axis in range(1, view.control.axes + 1))
+    names = (view.control.units.axis_name(axis) for axis in range(1, view.control.axes + 1))
     return [{"name": each[:1], "suffix": each[1:]} for each in names]
 
 
@@ -268,16 +268,16 @@ _AXES, _OFFSET, _MACRO, _ZERO, _CUT = range(5)
 def figures(view: View, request: Request) -> Content:
     """Return the decimals of positions, tool offsets, macro variables, work zero offsets or the cutting feed."""
     control = view.control
-    least = control.increment.decimals + control.inch_input
+    least = control.units.increment.decimals + control.units.inch_input
     if request.arguments[0] in (_AXES, _ZERO):
         pairs = [
-            (control.input_scale(axis).decimals, control.output_scale(axis).decimals)
+            (control.units.input_scale(axis).decimals, control.units.output_scale(axis).decimals)
             for axis in range(1, control.axes + 1)
         ]
     elif request.arguments[0] in (_OFFSET, _MACRO):
         pairs = [(max(least, 3) if request.arguments[0] == _MACRO else least,) * 2]
     elif request.arguments[0] == _CUT:
-        pairs = [(2 if control.inch_input else 0,) * 2]
+        pairs = [(2 if control.units.inch_input else 0,) * 2]
     else:
         raise RefusedError(ATTRIBUTE)
     decimals = [{"input_decimals": given, "output_decimals": shown} for given, shown in pairs]

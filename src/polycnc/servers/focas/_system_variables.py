@@ -40,14 +40,14 @@ def system_variable(view: View, number: int) -> float:
 
 def _position(view: View, base: int, axis: int) -> float:
     control, here = view.control, view.positions[axis - 1]
-    units = control.output_scale(axis) if base == _MACHINE else control.input_scale(axis)
-    has_length = control.axis_name(axis) == _LENGTH_AXIS
+    units = control.units.output_scale(axis) if base == _MACHINE else control.units.input_scale(axis)
+    has_length = control.units.axis_name(axis) == _LENGTH_AXIS
     length = units.counts(control.positions.tool_length_mm) if has_length else 0
     counts = {
         _BLOCK_END: here.absolute + here.distance - length,
         _MACHINE: here.machine,
         _WORK: here.absolute,
-        _SKIP: control.skip_positions[axis - 1],
+        _SKIP: control.skip.positions[axis - 1],
         _LENGTH: length,
         _LAG: here.servo_delay,
     }[base]
@@ -77,11 +77,11 @@ def write_system_variables(view: View, values: Mapping[int, float]) -> None:
     tools, works = {}, []
     for number, value in values.items():
         if (place := _offset_place(view, number)) is not None:
-            units = control.input_scale(place[1])
+            units = control.units.input_scale(place[1])
             counts = round(value * 10.0**units.decimals)
-            if abs(counts) > control.increment.offset_limit:
+            if abs(counts) > control.units.increment.offset_limit:
                 raise ValueError(f"#{number} cannot be {value:g}")
-            works.append((offset_name(place[0]), control.axis_name(place[1]), units.value(counts)))
+            works.append((offset_name(place[0]), control.units.axis_name(place[1]), units.value(counts)))
             continue
         try:
             found = control.custom_macros.tool_offset(number, value)
@@ -101,8 +101,8 @@ def _offset(view: View, number: int) -> float | None:
     if found is None:
         return None
     control, (place, axis) = view.control, found
-    units = control.input_scale(axis)
-    value = control.control.offsets.get(offset_name(place), {}).get(control.axis_name(axis), 0.0)
+    units = control.units.input_scale(axis)
+    value = control.control.offsets.get(offset_name(place), {}).get(control.units.axis_name(axis), 0.0)
     return units.counts(value) * 10.0**-units.decimals
 
 

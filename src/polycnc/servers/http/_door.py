@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from polycnc.servers.asgi import AsgiDoor
+from polycnc.servers.asgi import AsgiDoor, Refused
 from polycnc.servers.http._app import make_app
-from polycnc.servers.http._connection import Connection
+from polycnc.servers.http._problem import problem
 from polycnc.servers.machines import ServedMachine, Wanted
 
 PORT = 8080
@@ -18,4 +18,9 @@ class HttpDoor(AsgiDoor):
     def __init__(self, machines: Sequence[ServedMachine], wanted: Wanted) -> None:
         app = make_app(machines, token=wanted.token, log=wanted.log, hosts=(wanted.address,))
         port = PORT if wanted.port is None else wanted.port
-        super().__init__("http", app, wanted.address, port, http=Connection)
+        super().__init__("http", app, wanted.address, port, _refuse)
+
+
+def _refuse(status: int, what: str, hint: str) -> Refused:
+    said = problem(status, what, hint)
+    return Refused(status, said.raw_headers, bytes(said.body))

@@ -7,13 +7,14 @@ loop: without a change of threads for every request, and a thousand machines in 
 from __future__ import annotations
 
 import asyncio
+import math
 from collections.abc import Callable
 from typing import Any, Protocol, TypeVar
 
 from polycnc.machine import Clock, Host, HostError, Pace, Wall
 
 R = TypeVar("R")
-_BUSY_BEAT_S = 0.05
+_BUSY_BEAT_S = 0.1  # as watches look; whoever asks, or is told more often, lets time pass himself
 _IDLE_BEAT_S = 1.0
 _MOST_CYCLES = 20_000  # that are caught up with in one go
 _MOST_LATE_S = 0.5
@@ -84,6 +85,8 @@ class Keeper:
         self.failed: asyncio.Future[None] = asyncio.get_running_loop().create_future()
         self._served = served
         self._timer: asyncio.TimerHandle | None = None
+        self._due_s = math.inf  # when the next beat is planned, by the event loop
+        self._latest_s = 0.0
         self.pace.forget()
 
     def start(self) -> None:
@@ -112,9 +115,17 @@ class Keeper:
         if not self.failed.done():
             self.failed.cancel()
 
-    def _catch_up(self) -> bool:
-        """Let pass what is due, within its share of the wall clock; tell whether there is more."""
-        due = self.pace.due(self._served.clock.cycle_s, _MOST_CYCLES)
+    def _catch_up(self, *, whole: bool = True) -> bool:
+        """Let pass what is due, within its share of the wall clock; tell whether there is more.
+
+        Unless the `whole` is asked for, it ends at a multiple of the beat, where watches look, too: then each stretch
+        of time costs its overhead once.
+        """
+        clock = self._served.clock
+        due = self.pace.due(clock.cycle_s, _MOST_CYCLES)
+        beat = clock.cycles_for(_BUSY_BEAT_S)
+        if not whole and 0 < beat <= due < _MOST_CYCLES:
+            due -= (clock.cycles + due) % beat
         if not due:
             return False
         end_s = self._wall.now_s() + self._share_s
@@ -124,14 +135,23 @@ class Keeper:
             self._on_late(lag_s)
         return passed < due or due == _MOST_CYCLES
 
+    def take_lateness_s(self) -> float:
+        """Return by how much the latest beat since this was asked last came too late, or what was due was done."""
+        latest_s, self._latest_s = self._latest_s, 0.0
+        return latest_s
+
     def _beat(self) -> None:
         try:
-            late = self._catch_up()
+            late = self._catch_up(whole=False)
         except Exception as error:
             self._fail(error)
             return
+        loop = asyncio.get_running_loop()
+        now_s = loop.time()
+        self._latest_s = max(self._latest_s, now_s - self._due_s)
         beat_s = 0.0 if late else _BUSY_BEAT_S if self._served.busy else _IDLE_BEAT_S
-        self._timer = asyncio.get_running_loop().call_later(beat_s, self._beat)
+        self._due_s = min(self._due_s, now_s) if late else now_s + beat_s
+        self._timer = loop.call_later(beat_s, self._beat)
 
     def _soon(self) -> None:
         """Look soon: the rate has changed, or steps are due."""

@@ -87,29 +87,33 @@ class ServedDevice(Generic[D]):
         """Let up to `cycles` control cycles pass, until `is_enough` says so or something of `until` has happened."""
         done = 0
         most = 1 << 30
+        # a program's end is seen in its cycle, however time is cut
+        own = int(ControlEvent.RUN_STATE) if self.again is not None and self._control is not None else 0
         if self._control is not None:
             self._control().be_shared(is_enough)
         elif is_enough is not None:
             most = _PIECE_CYCLES
         while done < cycles:
             asked = min(cycles - done, most, self._to_next())
-            passed = self.device.advance(asked, until=until)
+            passed = self.device.advance(asked, until=(until or 0) | own if own else until)
             done += passed
             self.scenario.look(self.device)
             if self.again is not None:
                 self._start_again(self.again)
             for watch in self._watches:
                 watch.passed()
-            if passed < asked or (is_enough is not None and is_enough()) or self._has_happened(until):
+            ended = bool(own) and self._has_happened(own)
+            if (passed < asked and not ended) or (is_enough is not None and is_enough()):
+                break
+            if self._has_happened(until):
                 break
         return done
 
     def _to_next(self) -> int:
         """Return how many cycles may pass at once."""
         clock = self.clock
-        # a program's end is looked for at cycles that do not depend on how time is cut
-        looks = self.again is not None and (self.busy or self._is_over)
-        most = _LOOK_CYCLES - clock.cycles % _LOOK_CYCLES if looks else 1 << 30
+        begins = self.again is not None and self._is_over
+        most = _LOOK_CYCLES - clock.cycles % _LOOK_CYCLES if begins else 1 << 30
         most = min([most, *(watch.cycles_left() for watch in self._watches)])
         next_s = self.scenario.next_s()
         if next_s == math.inf:

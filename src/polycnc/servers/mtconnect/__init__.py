@@ -60,4 +60,4 @@ __all__ = [
     "value_text",
 ]
 
-__getattr__ = names_on_demand(__name__, {"_door": ("MTConnectDoor",)})
+__getattr__ = names_on_demand(__name__)

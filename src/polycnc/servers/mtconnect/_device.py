@@ -143,7 +143,9 @@ def value_text(value: Value) -> str | None:
 
 def _reader(row: Row, place: Place) -> Callable[[Seen], Value]:
     read = FACTS[row.fact].read
-    number, name = place.number, place.name
+    number, name, share = place.number, place.name, row.share
+    if share != 1.0:  # a number of a channel
+        return lambda seen: share * read(seen, seen.status.channels[number])  # type: ignore[operator]
     match place.scope:
         case Scope.CHANNEL:
             return lambda seen: read(seen, seen.status.channels[number])

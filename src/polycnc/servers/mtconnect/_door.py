@@ -6,11 +6,12 @@ import asyncio
 import contextlib
 import time
 from collections.abc import Sequence
+from functools import partial
 
 from starlette.types import ASGIApp, Receive, Scope, Send
 
 from polycnc.errors import PolycncError
-from polycnc.servers.asgi import AsgiDoor
+from polycnc.servers.asgi import AsgiDoor, Refused
 from polycnc.servers.machines import LOOPBACK, ServedMachine, Wanted
 from polycnc.servers.mtconnect._agent import Agent, Answer, StreamAsked
 from polycnc.servers.mtconnect._device import model_of
@@ -27,6 +28,7 @@ _LEAST_BEAT_S = 0.01  # between two pieces of a stream, whatever interval is ask
 _MOST_STREAMS = 100
 _MOST_WAIT_S = 30.0  # for a client that does not read
 _METHODS = ("GET", "HEAD")
+_MOST_BODY_BYTES = 1 << 16
 
 
 class Observed:
@@ -103,7 +105,7 @@ class App:
             answer = self._observed.agent.refusal(error, path)
         kind = _kind_of(scope)
         if isinstance(answer, Answer):
-            await _send_document(send, answer, kind)
+            await _send_document(send, answer, kind, closes=_body_bytes(scope) > _MOST_BODY_BYTES)
             return
         self._streams += 1
         try:
@@ -117,6 +119,8 @@ class App:
             raise AgentError(
                 Code.UNSUPPORTED, f"{scope['method'][:20]} is not served", hint="MTConnect reads: use GET."
             )
+        if _body_bytes(scope) > _MOST_BODY_BYTES:
+            raise AgentError(Code.INVALID_REQUEST, "a body is not read here", hint="Ask by the URL alone.")
         if self._hosts is None:
             return
         given = [value.decode("latin-1") for name, value in scope["headers"] if name == b"host"]
@@ -182,22 +186,42 @@ async def _send_part(send: Send, document: bytes, kind: bytes) -> None:
     await asyncio.wait_for(send(message), _MOST_WAIT_S)
 
 
+def _body_bytes(scope: Scope) -> int:
+    """Return how long the body of a request is; without end if it comes in chunks."""
+    if any(name == b"transfer-encoding" for name, _ in scope["headers"]):
+        return _MOST_BODY_BYTES + 1
+    return max((int(value) for name, value in scope["headers"] if name == b"content-length"), default=0)
+
+
 def _kind_of(scope: Scope) -> bytes:
     """Return the type of what a client wants: JSON if it asks for that alone, XML otherwise."""
     accepted = b",".join(value for name, value in scope["headers"] if name == b"accept").lower()
     return _JSON if b"json" in accepted and b"xml" not in accepted else _XML
 
 
-async def _send_document(send: Send, answer: Answer, kind: bytes) -> None:
-    document = as_json(answer.document) if kind == _JSON else answer.document
-    headers = [
+def _headers(document: bytes, kind: bytes) -> list[tuple[bytes, bytes]]:
+    return [
         (b"content-type", kind), (b"content-length", str(len(document)).encode()),
         (b"cache-control", b"no-store"), (b"x-content-type-options", b"nosniff"),
     ]  # fmt: skip
+
+
+async def _send_document(send: Send, answer: Answer, kind: bytes, *, closes: bool) -> None:
+    document = as_json(answer.document) if kind == _JSON else answer.document
+    headers = _headers(document, kind)
+    if closes:  # the rest of what the client sends is not read
+        headers.append((b"connection", b"close"))
     if answer.status == Code.UNSUPPORTED.status:
         headers.append((b"allow", ", ".join(_METHODS).encode()))
     await send({"type": "http.response.start", "status": answer.status, "headers": headers})
     await send({"type": "http.response.body", "body": document})
+
+
+def _refuse(agent: Agent, status: int, what: str, hint: str) -> Refused:
+    """Return an error document for what a connection refuses."""
+    code = Code.TOO_MANY if status == Code.TOO_MANY.status else Code.INVALID_REQUEST
+    said = agent.refusal(AgentError(code, what, hint=hint), "/")
+    return Refused(said.status, _headers(said.document, _XML), said.document)
 
 
 class MTConnectDoor(AsgiDoor):
@@ -210,4 +234,5 @@ class MTConnectDoor(AsgiDoor):
         loopback = wanted.address in (LOOPBACK, "::1", "localhost") or wanted.address.startswith("127.")
         hosts = frozenset({"localhost", LOOPBACK, "::1", wanted.address}) if loopback else None
         app: ASGIApp = App(observed, hosts)
-        super().__init__("mtconnect", app, wanted.address, PORT if wanted.port is None else wanted.port)
+        port = PORT if wanted.port is None else wanted.port
+        super().__init__("mtconnect", app, wanted.address, port, partial(_refuse, observed.agent))

@@ -24,9 +24,12 @@ FIRST, LAST = (1, 0), (99, 0)
 _UNITS = {
     (Unit.LENGTH, "mm"): "MILLIMETER", (Unit.LENGTH, "deg"): "DEGREE",
     (Unit.SPEED, "mm"): "MILLIMETER/SECOND", (Unit.SPEED, "deg"): "DEGREE/SECOND",
-    (Unit.MM, ""): "MILLIMETER_3D", (Unit.MM_S, ""): "MILLIMETER/SECOND",
+    (Unit.MM, ""): "MILLIMETER_3D", (Unit.MM_MIN, ""): "MILLIMETER/SECOND",
     (Unit.RPM, ""): "REVOLUTION/MINUTE", (Unit.SECOND, ""): "SECOND",
 }  # fmt: skip
+
+_SHARES = {Unit.MM_MIN: 1.0 / 60.0}
+"""What values are multiplied by to have MTConnect's unit."""
 
 _EXECUTION = {
     Execution.READY: "READY", Execution.ACTIVE: "ACTIVE", Execution.HOLD: "FEED_HOLD",
@@ -68,6 +71,11 @@ class Row:
     def units(self, unit: str) -> str:
         """Return the units, of an axis that counts in `unit` ("" otherwise); "" for what has none."""
         return self.given_units or _UNITS.get((FACTS[self.fact].unit, unit), "")
+
+    @property
+    def share(self) -> float:
+        """What a value of the fact is multiplied by."""
+        return _SHARES.get(FACTS[self.fact].unit, 1.0)
 
     @property
     def given_units(self) -> str:

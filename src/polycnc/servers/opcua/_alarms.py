@@ -66,7 +66,7 @@ class AlarmEvents:
         number, text, axis = key
         self._count += 1
         for template, number_field, emitters in self._kinds:
-            condition = f"{self._machine}/{type(template).__name__}/{number}/{axis or ''}"
+            condition = f"{self._machine}/{number_field}/{number}/{axis or ''}"
             values = {
                 "EventId": f"{self._machine}:{self._count}".encode(),
                 "Time": time,

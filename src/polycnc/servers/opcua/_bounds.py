@@ -128,6 +128,16 @@ class Subscriptions(SubscriptionService):
         modified: list[ua.MonitoredItemModifyResult] = super().modify_monitored_items(params)
         return modified
 
+    async def trigger_event(self, event: Any, subscription_id: int | None = None) -> None:
+        """Send an event; one of an alarm that is on is kept for whoever asks for a refresh, for each that emits it."""
+        await super().trigger_event(event, subscription_id)
+        if (condition := getattr(event, "NodeId", None)) is not None:
+            self._conditions.pop(condition, None)
+            key: Any = (condition, event.emitting_node)
+            self._conditions.pop(key, None)
+            if event.Retain:
+                self._conditions[key] = event
+
     def shortest_s(self) -> float:
         """Return the shortest interval of the subscriptions (s)."""
         intervals = [each.data.RevisedPublishingInterval for each in self.subscriptions.values()]

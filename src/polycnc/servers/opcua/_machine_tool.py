@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 from polycnc import __version__
-from polycnc.cnc import Timer
 from polycnc.servers.opcua import _moment as words
 from polycnc.servers.opcua._cnc import VENDOR
 from polycnc.servers.opcua._model import DI, MACHINE_TOOL, MACHINERY, Enumeration, Member, Type
-from polycnc.servers.opcua._moment import PRODUCTION_STATES
+from polycnc.servers.opcua._moment import PRODUCTION_STATES, Of
 
 ENUMERATIONS = (
     Enumeration("MachineOperationMode", MACHINE_TOOL, 65, words.MACHINE_MODES),
@@ -16,7 +15,7 @@ ENUMERATIONS = (
 )
 STATE_NODES = {"Initializing": 135, "Running": 138, "Ended": 140, "Interrupted": 139, "Aborted": 141}
 """The states of the production state machine, by the number of their node."""
-_HOUR_S = 3600.0
+_HOUR_S = 3600
 
 GROUP = Type("FunctionalGroupType", DI, 1005, 61)
 ITEM_IDENTIFICATION = Type("MachineryItemIdentificationType", MACHINERY, 1004, GROUP, (
@@ -35,47 +34,47 @@ ELEMENT = Type("ElementMonitoringType", MACHINE_TOOL, 23, 58, (
 ), abstract=True)  # fmt: skip
 WORKING_UNIT = Type("WorkingUnitMonitoringType", MACHINE_TOOL, 41, ELEMENT, abstract=True)
 CHANNEL_MODIFIERS = Type("ChannelModifierType", MACHINE_TOOL, 33, 58, (
-    Member("BlockSkip", "Boolean", lambda at: bool(at.channel.switches.block_delete), 383, optional=True),
-    Member("DryRun", "Boolean", lambda at: at.channel.switches.dry_run, 361),
-    Member("OptionalStop", "Boolean", lambda at: at.channel.switches.optional_stop, 364),
-    Member("SingleStep", "Boolean", lambda at: at.channel.switches.single_block, 367),
-    Member("TestMode", "Boolean", lambda at: at.channel.switches.machine_lock, 366, optional=True),
+    Member("BlockSkip", "Boolean", Of("block_delete", bool), 383, optional=True),
+    Member("DryRun", "Boolean", Of("dry_run", bool), 361),
+    Member("OptionalStop", "Boolean", Of("optional_stop", bool), 364),
+    Member("SingleStep", "Boolean", Of("single_block", bool), 367),
+    Member("TestMode", "Boolean", Of("machine_lock", bool), 366, optional=True),
 ))  # fmt: skip
 CHANNEL = Type("ChannelMonitoringType", MACHINE_TOOL, 16, ELEMENT, (
-    Member("ChannelMode", "ChannelMode", lambda at: at.channel_mode, 249),
-    Member("ChannelState", "ChannelState", lambda at: at.channel_state, 332),
-    Member("FeedOverride", "Double", lambda at: 100.0 * at.channel.overrides.feed, 276, "%", "feed override"),
-    Member("RapidOverride", "Double", lambda at: 100.0 * at.channel.overrides.rapid, 287, "%", "rapid override",
+    Member("ChannelMode", "ChannelMode", Of("mode", words.channel_mode), 249),
+    Member("ChannelState", "ChannelState", Of("channel_state", words.word_of(words.CHANNEL_STATES)), 332),
+    Member("FeedOverride", "Double", Of("feed_override"), 276, "%", "feed override"),
+    Member("RapidOverride", "Double", Of("rapid_override"), 287, "%", "rapid override",
         optional=True),
 ))  # fmt: skip
 SPINDLE = Type("SpindleMonitoringType", MACHINE_TOOL, 22, WORKING_UNIT, (
-    Member("IsRotating", "Boolean", lambda at: at.status.spindle.actual_rpm != 0.0, 247),
-    Member("Override", "Double", lambda at: 100.0 * at.status.spindle.override, 241, "%", "spindle override",
+    Member("IsRotating", "Boolean", Of("spindle_speed", bool), 247),
+    Member("Override", "Double", Of("spindle_override"), 241, "%", "spindle override",
         optional=True),
 ))  # fmt: skip
 OPERATION = Type("MachineOperationMonitoringType", MACHINE_TOOL, 26, 58, (
-    Member("OperationMode", "MachineOperationMode", lambda at: at.machine_mode, 225),
-    Member("FeedOverride", "Double", lambda at: 100.0 * at.status.overrides.feed, 233, "%", "feed override",
+    Member("OperationMode", "MachineOperationMode", Of("mode", words.machine_mode), 225),
+    Member("FeedOverride", "Double", Of("feed_override"), 233, "%", "feed override",
         optional=True),
-    Member("PowerOnDuration", "UInt32", lambda at: int(at.status.timers_s[Timer.POWER_ON] // _HOUR_S), 261,
+    Member("PowerOnDuration", "UInt32", Of("powered_s", lambda powered_s: powered_s // _HOUR_S), 261,
         optional=True),
 ))  # fmt: skip
 MONITORING = Type("MonitoringType", MACHINE_TOOL, 14)
 
 PRODUCTION_MACHINE = Type("ProductionStateMachineType", MACHINE_TOOL, 24, 2771)
 PRODUCTION_STATE = Type("ProductionProgramStateMachineType", MACHINE_TOOL, 15, PRODUCTION_MACHINE, (
-    Member("CurrentState", "LocalizedText", lambda at: PRODUCTION_STATES[at.production_state], space=""),
-    Member("CurrentState/Id", "NodeId", lambda at: at.fixed.nodes[PRODUCTION_STATES[at.production_state]],
+    Member("CurrentState", "LocalizedText", Of("production", str.capitalize), space=""),
+    Member("CurrentState/Id", "NodeId", lambda at: at.fixed.nodes[at.read("production").capitalize()],
         prop=True, space=""),
-    Member("CurrentState/Number", "UInt32", lambda at: at.production_state, prop=True, space=""),
+    Member("CurrentState/Number", "UInt32", Of("production", words.word_of(PRODUCTION_STATES)), prop=True, space=""),
 ))  # fmt: skip
 PROGRAM = Type("ProductionProgramType", MACHINE_TOOL, 59, 58, (
-    Member("Name", "String", lambda at: at.channel.program or "", 193, prop=True),
+    Member("Name", "String", Of("program", otherwise=""), 193, prop=True),
     Member("NumberInList", "UInt16", lambda at: 0, 230, prop=True, space=""),
 ))  # fmt: skip
 ACTIVE_PROGRAM = Type("ProductionActiveProgramType", MACHINE_TOOL, 32, PROGRAM)
 STATISTICS = Type("ProductionStatisticsType", MACHINE_TOOL, 20, 58, (
-    Member("PartsProducedInLifetime", "UInt32", lambda at: at.status.parts.total, 236, optional=True),
+    Member("PartsProducedInLifetime", "UInt32", Of("parts_total"), 236, optional=True),
 ))  # fmt: skip
 PRODUCTION = Type("ProductionType", MACHINE_TOOL, 21)
 EQUIPMENT = Type("EquipmentType", MACHINE_TOOL, 12)

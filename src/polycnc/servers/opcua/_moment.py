@@ -1,11 +1,13 @@
-"""What readings are made of: a status, what is fixed about a machine, and which channel or axis is meant."""
+"""What readings are made of: the facts of a plant, what is fixed about a machine, which channel or axis is meant."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
+from typing import Any
 
-from polycnc.cnc import AxisStatus, ChannelStatus, Control, Mode, Motion, RunState, Status
+from polycnc.cnc import Control, Mode
+from polycnc.servers.plant import FACTS, Scope, Seen
 
 OPERATION_MODES = ("Manual", "MDA", "Automatic")
 CHANNEL_STATES = ("Active", "Interrupted", "Reset")
@@ -25,13 +27,27 @@ _CHANNEL = {
     Mode.AUTO: "Automatic", Mode.MDI: "MdaMdi", Mode.JOG: "JogManual", Mode.INC: "JogIncrement",
     Mode.HANDLE: "JogIncrement", Mode.REF: "Reference", Mode.EDIT: "Other",
 }  # fmt: skip
-_PROGRAM = {
-    RunState.ACTIVE: "Running", RunState.HOLD: "Interrupted", RunState.RESET: "Canceled", RunState.ALARM: "Canceled",
-}  # fmt: skip
-_PRODUCTION = {
-    RunState.READY: "Initializing", RunState.ACTIVE: "Running", RunState.COMPLETED: "Ended",
-    RunState.RESET: "Aborted", RunState.ALARM: "Aborted",
-}  # fmt: skip
+
+
+def operation_mode(mode: Any) -> int:
+    """Return the operation mode of a channel (OPC 40502); programs are edited beside Automatic."""
+    return OPERATION_MODES.index(_OPERATION.get(mode, "Manual"))
+
+
+def machine_mode(mode: Any) -> int:
+    """Return the operation mode of a machine (OPC 40501-1)."""
+    return MACHINE_MODES.index(_MACHINE.get(mode, "Manual"))
+
+
+def channel_mode(mode: Any) -> int:
+    """Return the mode of a channel (OPC 40501-1)."""
+    return CHANNEL_MODES.index(_CHANNEL[mode])
+
+
+def word_of(words: Sequence[str]) -> Callable[[Any], int]:
+    """Return what finds a word of a fact (`in target area`) among those of OPC UA (`InTargetArea`), by its number."""
+    numbers = {word.lower(): number for number, word in enumerate(words)}
+    return lambda value: numbers[value.replace(" ", "")]
 
 
 @dataclass(frozen=True, slots=True)
@@ -81,80 +97,45 @@ class Fixed:
 
 @dataclass(frozen=True, slots=True)
 class At:
-    """A status, and the channel or axis that a reading is about."""
+    """A machine at one cycle, and the channel or axis that a reading is about."""
 
-    status: Status
+    seen: Seen
     fixed: Fixed
     number: int = 0
     name: str = ""
 
-    @property
-    def channel(self) -> ChannelStatus:
-        """The channel."""
-        return self.status.channels[self.number]
+    def read(self, fact: str) -> Any:
+        """Return the value of a fact; None of an axis that the machine does not have."""
+        row, status = FACTS[fact], self.seen.status
+        if row.scope is Scope.AXIS:
+            axis = status.axes.get(self.name)
+            return None if axis is None else row.read(self.seen, axis)
+        return row.read(self.seen, status.channels[self.number] if row.scope is Scope.CHANNEL else None)
 
-    @property
-    def axis(self) -> AxisStatus | None:
-        """The axis; None if the machine has none of this name."""
-        return self.status.axes.get(self.name)
 
-    # ------------------------------------------------------------------ words of the enumerations
+@dataclass(frozen=True, slots=True)
+class Of:
+    """A reading: the value of a fact, of which `turn` makes one of OPC UA; `otherwise` where there is none."""
 
-    @property
-    def operation_mode(self) -> int:
-        """The operation mode of the channel (OPC 40502); programs are edited beside Automatic."""
-        return OPERATION_MODES.index(_OPERATION.get(self.channel.mode, "Manual"))
+    fact: str
+    turn: Callable[[Any], Any] = lambda value: value
+    otherwise: Any = None
+    axis: str = ""
 
-    @property
-    def channel_state(self) -> int:
-        """The state of the channel; after an alarm it is interrupted until a reset."""
-        channel = self.channel
-        if channel.interrupted or channel.run_state is RunState.ALARM:
-            return CHANNEL_STATES.index("Interrupted")
-        busy = channel.active or channel.motion is not Motion.NONE
-        return CHANNEL_STATES.index("Active" if busy else "Reset")
+    def __call__(self, at: At) -> Any:
+        value = (At(at.seen, at.fixed, at.number, self.axis) if self.axis else at).read(self.fact)
+        return self.otherwise if value is None else self.turn(value)
 
-    @property
-    def program_state(self) -> int:
-        """The state of the program."""
-        channel = self.channel
-        if channel.run_state is RunState.ACTIVE and channel.starved:
-            return PROGRAM_STATES.index("Waiting")
-        return PROGRAM_STATES.index(
-            "Running" if channel.active else _PROGRAM.get(channel.run_state, "Stopped")
-        )
 
-    @property
-    def machine_mode(self) -> int:
-        """The operation mode of the machine (OPC 40501-1)."""
-        return MACHINE_MODES.index(_MACHINE.get(self.status.mode, "Manual"))
+@dataclass(frozen=True, slots=True)
+class Several:
+    """A reading of several facts as one value; None if one of them has none."""
 
-    @property
-    def channel_mode(self) -> int:
-        """The mode of the channel (OPC 40501-1)."""
-        return CHANNEL_MODES.index(_CHANNEL[self.channel.mode])
+    facts: tuple[str, ...]
+    join: Callable[..., Any] = lambda *values: values
+    axis: str = ""
 
-    @property
-    def production_state(self) -> int:
-        """The state of the active program (OPC 40501-1)."""
-        channel = self.channel
-        if channel.active:
-            return PRODUCTION_STATES.index("Running")
-        return PRODUCTION_STATES.index(_PRODUCTION.get(channel.run_state, "Interrupted"))
-
-    @property
-    def spindle_state(self) -> int:
-        """What the spindle does (OPC 40502)."""
-        spindle = self.status.spindle
-        if spindle.actual_rpm == 0.0 and spindle.commanded_rpm == 0.0:
-            return SPINDLE_STATES.index("Stopped")
-        if spindle.reached:
-            return SPINDLE_STATES.index("InTargetArea")
-        slower = abs(spindle.actual_rpm) > abs(spindle.commanded_rpm)
-        return SPINDLE_STATES.index("Decelerating" if slower else "Accelerating")
-
-    @property
-    def turn(self) -> int:
-        """The direction in which the spindle turns."""
-        rpm = self.status.spindle.actual_rpm
-        return TURNS.index("None" if rpm == 0.0 else "CW" if rpm > 0.0 else "CCW")
+    def __call__(self, at: At) -> Any:
+        of = At(at.seen, at.fixed, at.number, self.axis) if self.axis else at
+        values = tuple(map(of.read, self.facts))
+        return None if None in values else self.join(*values)

@@ -9,13 +9,14 @@ from typing import Any
 from asyncua import ua
 from asyncua.server.address_space import AddressSpace
 
-from polycnc.cnc import PastAlarm, Status
+from polycnc.cnc import Control, Status
 from polycnc.servers.machines import ServedMachine
 from polycnc.servers.opcua._alarms import AlarmEvents
 from polycnc.servers.opcua._cnc import POSITION
 from polycnc.servers.opcua._model import Member
 from polycnc.servers.opcua._moment import At, Fixed
 from polycnc.servers.opcua._space import NOT_SUPPORTED, Bound, Position, data_of
+from polycnc.servers.plant import Seen, see
 
 _NONE = object()
 _VALUE = ua.AttributeIds.Value
@@ -40,6 +41,7 @@ class Publisher:
         self._alarms = alarms
         self._last: Status | None = None
         self._values: list[Any] = [_NONE] * len(self._bound)
+        self._see = see(self._control)
 
     async def refresh(self) -> None:
         """Write what has changed since the last time; the values are those of one cycle.
@@ -53,12 +55,20 @@ class Publisher:
         """Write everything for the first time; no machine time passes."""
         await self._publish(*self._read())
 
-    def _read(self) -> tuple[Status, tuple[PastAlarm, ...], int]:
+    def at(self, number: int, name: str) -> At:
+        """Return the present cycle, for a channel or axis."""
+        return At(self._see(), self.fixed, number, name)
+
+    def _control(self) -> Control:
         control = self.machine.control
         assert control is not None
-        return control.status(), control.inventory().alarms, control.alarms.revision
+        return control
 
-    async def _publish(self, status: Status, past: Sequence[PastAlarm], revision: int) -> None:
+    def _read(self) -> tuple[Seen, int]:
+        return self._see(), self._control().alarms.revision
+
+    async def _publish(self, seen: Seen, revision: int) -> None:
+        status = seen.status
         if status is self._last:
             return
         self._last = status
@@ -68,12 +78,12 @@ class Publisher:
             item = each.item
             key = item.channel, item.about
             if (at := moments.get(key)) is None:
-                at = moments[key] = At(status, self.fixed, *key)
+                at = moments[key] = At(seen, self.fixed, *key)
             value = None if each.member.read is None else each.member.read(at)
             if value != self._values[number]:
                 self._values[number] = value
                 await self._write(each, variant, value, time)
-        await self._alarms.follow(status, past, revision)
+        await self._alarms.follow(status, seen.inventory.alarms, revision)
 
     async def _write(self, bound: Bound, variant: ua.VariantType, value: Any, time: Any) -> None:
         await self._space.write_attribute_value(

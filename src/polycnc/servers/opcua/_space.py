@@ -111,7 +111,7 @@ class Space:
     def _add_enumeration(self, row: Enumeration) -> None:
         space = self.index[row.space]
         node = ua.NodeId(row.number, space)
-        attributes = ua.DataTypeAttributes(DisplayName=ua.LocalizedText(row.name))
+        attributes = ua.DataTypeAttributes(DisplayName=ua.LocalizedText(row.name), IsAbstract=False)
         fields = [
             ua.EnumField(Name=word, DisplayName=ua.LocalizedText(word), Value=value)
             for value, word in enumerate(row.words)
@@ -127,7 +127,7 @@ class Space:
         space = self.index[CNC]
         data = ua.NodeId(POSITION_NUMBERS["data"], space)
         binary = ua.NodeId(POSITION_NUMBERS["binary"], space)
-        attributes = ua.DataTypeAttributes(DisplayName=ua.LocalizedText(POSITION))
+        attributes = ua.DataTypeAttributes(DisplayName=ua.LocalizedText(POSITION), IsAbstract=False)
         attributes.DataTypeDefinition = ua.StructureDefinition(
             DefaultEncodingId=binary,
             BaseDataType=ua.NodeId(22),
@@ -141,7 +141,10 @@ class Space:
         self.add_object(binary, data, "Default Binary", 0, ua.NodeId(76), reference=_ENCODING)
         node = ua.NodeId(POSITION_NUMBERS["type"], space)
         kind = ua.VariableTypeAttributes(
-            DisplayName=ua.LocalizedText("CncPositionVariableType"), DataType=data, ValueRank=-1
+            DisplayName=ua.LocalizedText("CncPositionVariableType"),
+            DataType=data,
+            ValueRank=-1,
+            IsAbstract=False,
         )
         self._add(
             node, ua.NodeId(63), "CncPositionVariableType", space, ua.NodeClass.VariableType, kind, _SUBTYPE

@@ -7,6 +7,7 @@ from collections.abc import Awaitable, Callable
 from typing import Any
 
 from asyncua import ua
+from asyncua.server.history import HistoryManager
 from asyncua.server.internal_server import InternalServer
 from asyncua.server.standard_address_space import standard_address_space
 
@@ -49,9 +50,20 @@ class BoundedServer(InternalServer):
             raise
 
 
+class NoHistory(HistoryManager):
+    """No node has a history, which is said to whoever reads one."""
+
+    async def read_history(self, params: ua.HistoryReadParameters) -> list[ua.HistoryReadResult]:
+        """Refuse."""
+        refused = ua.StatusCode(ua.StatusCodes.BadHistoryOperationUnsupported)
+        return [ua.HistoryReadResult(StatusCode=refused) for _ in params.NodesToRead]
+
+
 def bounded_server(user_manager: Any) -> BoundedServer:
     """Return what a server holds, bounded."""
     made = BoundedServer(user_manager=user_manager)
+    made.history_manager = NoHistory(made)
+    made.bind_condition_methods = 1  # the severity of the events that begin and end a refresh
     made.max_connections = 100
     made.max_subscriptions = 1000
     made.max_unacked_messages_per_subscription = 100

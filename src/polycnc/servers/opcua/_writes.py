@@ -14,7 +14,6 @@ from polycnc.cnc import ControlError, Refusal
 from polycnc.errors import PolycncError
 from polycnc.servers.commands import carry_out
 from polycnc.servers.machines import Log
-from polycnc.servers.opcua._moment import At
 from polycnc.servers.opcua._publish import Publisher
 from polycnc.servers.opcua._space import Bound, data_of, words_of
 from polycnc.servers.opcua._tree import span_of
@@ -69,13 +68,10 @@ class Writes(AttributeService):
 
     async def _act(self, publisher: Publisher, bound: Bound, value: Any) -> int:
         machine, write = publisher.machine, bound.member.write
-        control = machine.control
         assert write is not None
-        assert control is not None
 
         def act() -> Mapping[str, Any] | None:
-            at = At(control.status(), publisher.fixed, bound.item.channel, bound.item.about)
-            asked = write(at, value)
+            asked = write(publisher.at(bound.item.channel, bound.item.about), value)
             if asked is not None:
                 carry_out(machine, asked)
             return asked

@@ -8,13 +8,12 @@ from enum import StrEnum
 from types import MappingProxyType
 from typing import Any, TypeAlias
 
-from polycnc.cnc import AxisStatus, ChannelStatus, Control, Inventory, RunState, Status, Timer
+from polycnc.cnc import AxisStatus, ChannelStatus, Control, Inventory, Motion, RunState, Status, Timer
 
 Value: TypeAlias = str | int | float | tuple[float, ...] | None
 """A value of a fact; None where there is none now."""
 
 _HOME = 1e-6  # how near to the reference position an axis is at home, mm or deg
-_S_PER_MIN = 60.0
 
 
 class Scope(StrEnum):
@@ -33,10 +32,11 @@ class Unit(StrEnum):
     LENGTH = "mm or deg"
     SPEED = "mm/s or deg/s"
     MM = "mm"
-    MM_S = "mm/s"
+    MM_MIN = "mm/min"
     RPM = "rpm"
     PERCENT = "%"
     SECOND = "s"
+    DEG = "deg"
 
 
 class Execution(StrEnum):
@@ -63,6 +63,12 @@ _EXECUTIONS = {
     RunState.COMPLETED: Execution.COMPLETED,
     RunState.ALARM: Execution.STOPPED,
 }
+
+
+_PROGRAMS = {RunState.HOLD: "interrupted", RunState.RESET: "canceled", RunState.ALARM: "canceled"}
+_PRODUCTION = {
+    RunState.READY: "initializing", RunState.COMPLETED: "ended", RunState.RESET: "aborted", RunState.ALARM: "aborted",
+}  # fmt: skip
 
 
 @dataclass(frozen=True, slots=True)
@@ -117,6 +123,41 @@ def _execution(channel: ChannelStatus) -> str:
     return Execution.ACTIVE if channel.active else _EXECUTIONS[channel.run_state]
 
 
+def _channel_state(channel: ChannelStatus) -> str:
+    if channel.interrupted or channel.run_state is RunState.ALARM:
+        return "interrupted"
+    return "active" if channel.active or channel.motion is not Motion.NONE else "reset"
+
+
+def _program_state(channel: ChannelStatus) -> str:
+    if channel.run_state is RunState.ACTIVE and channel.starved:
+        return "waiting"
+    return "running" if channel.active else _PROGRAMS.get(channel.run_state, "stopped")
+
+
+def _production(channel: ChannelStatus) -> str:
+    return "running" if channel.active else _PRODUCTION.get(channel.run_state, "interrupted")
+
+
+def _spindle_state(seen: Seen) -> str:
+    spindle = seen.status.spindle
+    if spindle.actual_rpm == 0.0 and spindle.commanded_rpm == 0.0:
+        return "stopped"
+    if spindle.reached:
+        return "in target area"
+    return "decelerating" if abs(spindle.actual_rpm) > abs(spindle.commanded_rpm) else "accelerating"
+
+
+def _codes(words: object) -> tuple[float, ...]:
+    """Return the codes of words like `G54`, `54` or `M3` that are whole numbers."""
+    found = []
+    for word in words if isinstance(words, list | tuple) else ():
+        text = str(word).lstrip("GMgm")
+        if text.isascii() and text.isdigit():
+            found.append(int(text))
+    return tuple(found)
+
+
 def _position(seen: Seen, channel: ChannelStatus) -> Value:
     """Return where the tool is in the channel's own work coordinates, None without three linear axes X, Y and Z."""
     axes = seen.status.axes
@@ -156,11 +197,27 @@ _ROWS = (
     Fact("block", _C, "the executed block", lambda seen, it: it.block.text.strip() if it.block else None),
     Fact("line", _C, "its line, from 1", lambda seen, it: it.block.line if it.block else None),
     Fact("sequence", _C, "its sequence number (N)", lambda seen, it: it.block.sequence if it.block else None),
-    Fact("feed", _C, "the speed along the path", lambda seen, it: it.feed.actual / _S_PER_MIN, Unit.MM_S),
+    Fact("offset", _C, "where it begins in its program, in bytes",
+        lambda seen, it: it.block.offset if it.block else None),
+    Fact("block_program", _C, "the program of the executed block, the selected one without a block",
+        lambda seen, it: it.block.program if it.block else it.program),
+    Fact("main_program", _C, "the program that called the others",
+        lambda seen, it: it.stack[0] if it.stack else it.program),
+    Fact("g_codes", _C, "the modal G codes that are whole numbers",
+        lambda seen, it: _codes(list(it.modal.g.values())) if it.modal else ()),
+    Fact("m_codes", _C, "the M codes of the executed block that are whole numbers",
+        lambda seen, it: tuple(it.modal.m) if it.modal else ()),
+    Fact("channel_state", _C, "active, interrupted (after an alarm until a reset) or reset",
+        lambda seen, it: _channel_state(it)),
+    Fact("program_state", _C, "stopped, running, waiting for more of the program, interrupted or canceled",
+        lambda seen, it: _program_state(it)),
+    Fact("production", _C, "initializing, running, ended, interrupted or aborted", lambda seen, it: _production(it)),
+    Fact("hold", _C, "feed hold", lambda seen, it: int(it.run_state is RunState.HOLD)),
+    Fact("feed", _C, "the speed along the path", lambda seen, it: it.feed.actual, Unit.MM_MIN),
     Fact("commanded_feed", _C, "the speed that it shall have, with overrides",
-        lambda seen, it: it.feed.commanded / _S_PER_MIN, Unit.MM_S),
+        lambda seen, it: it.feed.commanded, Unit.MM_MIN),
     Fact("programmed_feed", _C, "the F word, without overrides",
-        lambda seen, it: it.feed.programmed / _S_PER_MIN, Unit.MM_S),
+        lambda seen, it: it.feed.programmed, Unit.MM_MIN),
     Fact("feed_override", _C, "the feed override", lambda seen, it: 100 * it.overrides.feed, Unit.PERCENT),
     Fact("rapid_override", _C, "the rapid override", lambda seen, it: 100 * it.overrides.rapid, Unit.PERCENT),
     Fact("path_position", _C, "X, Y and Z in work coordinates", _position, Unit.MM),
@@ -171,10 +228,13 @@ _ROWS = (
     Fact("single_block", _C, "single block", lambda seen, it: int(it.switches.single_block)),
     Fact("machine_lock", _C, "machine lock", lambda seen, it: int(it.switches.machine_lock)),
     Fact("optional_stop", _C, "optional stop", lambda seen, it: int(it.switches.optional_stop)),
+    Fact("block_delete", _C, "block delete", lambda seen, it: int(bool(it.switches.block_delete))),
+    Fact("jog_increment", _M, "the step of the handwheel", lambda seen, _: seen.status.wheel.size, Unit.MM),
     Fact("cycle_s", _M, "how long the program has run", _timer(Timer.CYCLE), Unit.SECOND),
     Fact("parts", _M, "parts made in this lot", lambda seen, _: seen.status.parts.made),
     Fact("parts_wanted", _M, "parts that the lot shall have, 0 for no number",
         lambda seen, _: seen.status.parts.required),
+    Fact("parts_total", _M, "parts made in all", lambda seen, _: seen.status.parts.total),
     Fact("machine_position", _A, "the actual machine position", lambda seen, it: it.machine, Unit.LENGTH),
     Fact("setpoint", _A, "the commanded machine position", lambda seen, it: it.setpoint, Unit.LENGTH),
     Fact("work_position", _A, "the position in work coordinates", lambda seen, it: it.work, Unit.LENGTH),
@@ -182,6 +242,9 @@ _ROWS = (
     Fact("following_error", _A, "setpoint less actual position", lambda seen, it: it.following_error, Unit.LENGTH),
     Fact("velocity", _A, "the velocity", lambda seen, it: it.velocity, Unit.SPEED),
     Fact("load", _A, "the load, which follows the speed", lambda seen, it: it.load_percent, Unit.PERCENT),
+    Fact("zero_offset", _A, "machine position less work position", lambda seen, it: it.machine - it.work, Unit.LENGTH),
+    Fact("moving", _A, "whether it moves", lambda seen, it: int(it.moving)),
+    Fact("referenced", _A, "whether its reference is known", lambda seen, it: int(it.referenced)),
     Fact("axis_state", _A, "home, travel or stopped", _axis_state),
     Fact("spindle_speed", _S, "its speed, without sign", lambda seen, _: abs(seen.status.spindle.actual_rpm), Unit.RPM),
     Fact("commanded_spindle_speed", _S, "the speed that it shall have, with the override",
@@ -191,6 +254,11 @@ _ROWS = (
     Fact("spindle_override", _S, "its override", lambda seen, _: 100 * seen.status.spindle.override, Unit.PERCENT),
     Fact("spindle_direction", _S, "the direction that it was given: 1 clockwise, -1, None for stopped",
         lambda seen, _: seen.status.spindle.direction or None),
+    Fact("spindle_turn", _S, "the direction in which it turns: 1 clockwise, -1, 0 for none",
+        lambda seen, _: (seen.status.spindle.actual_rpm > 0.0) - (seen.status.spindle.actual_rpm < 0.0)),
+    Fact("spindle_state", _S, "stopped, in target area, accelerating or decelerating",
+        lambda seen, _: _spindle_state(seen)),
+    Fact("spindle_angle", _S, "its angle", lambda seen, _: seen.status.spindle.angle_deg, Unit.DEG),
     Fact("spindle_mode", _S, "what the rotary axis is used as", lambda seen, _: "spindle"),
 )
 # fmt: on

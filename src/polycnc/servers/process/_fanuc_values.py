@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterable, Mapping
 
 from polycnc.cnc import ControlError, Refusal
 from polycnc.controllers.fanuc import Attribute, ParameterRow, PowerMate
+from polycnc.errors import shown
 from polycnc.servers.machines import NamedValue, Single, no_such
+from polycnc.servers.process._macro_numbers import LARGEST, number, variable_number, variable_value
+from polycnc.units import is_number
 
 _LOCALS = range(1, 34)
-_LARGEST = 1e12
 _LENGTH = "length_mm"
 _OFFSETS = frozenset(
     {"EXT", *(f"G{number}" for number in range(54, 60)), *(f"G54.P{k}" for k in range(1, 301))}
@@ -63,7 +64,7 @@ class FanucParameters:
             if isinstance(each, bool) or not isinstance(each, int) or not row.fits(each):
                 raise ControlError(
                     Refusal.DATA,
-                    f"parameter {row.number} cannot be {each!r:.40}",
+                    f"parameter {row.number} cannot be {shown(each, 40)}",
                     hint=f"Give whole numbers from {row.low} to {row.high}.",
                 )
         with mate.store.transaction():
@@ -72,10 +73,10 @@ class FanucParameters:
                 mate.parameters.set(row.number, each, axes.get(axis, 0))
 
     def _axes(self) -> dict[str, int]:
-        return {self._mate.axis_name(axis): axis for axis in range(1, self._mate.axes + 1)}
+        return {self._mate.units.axis_name(axis): axis for axis in range(1, self._mate.axes + 1)}
 
     def _row(self, name: str) -> ParameterRow:
-        row = self._mate.parameters.rows.get(_whole(name))
+        row = self._mate.parameters.rows.get(number(name))
         if row is None or Attribute.NOT_READABLE in row.attributes:
             raise no_such("parameter", name)
         return row
@@ -110,36 +111,26 @@ class FanucVariables:
     def get(self, name: str) -> NamedValue:
         """Return one by its number, with or without its `#`."""
         try:
-            return self._named(_whole(name.removeprefix("#")))
+            return self._named(variable_number(name))
         except KeyError:
             raise no_such("variable", name) from None
 
     def set(self, name: str, value: Single | Mapping[str, Single]) -> None:
         """Set a common variable; None makes it vacant."""
-        number = _whole(name.removeprefix("#"))
+        number = variable_number(name)
         if number not in self._mate.macros:
             self.get(name)
             raise ControlError(
                 Refusal.PROTECTED, f"variable #{number} can only be read", hint="Set it in a program."
             )
-        if value is None:
-            self._mate.macros.set(number, None)
-            return
-        is_number = isinstance(value, int | float) and not isinstance(value, bool)
-        if not is_number or not abs(value) < _LARGEST:  # type: ignore[arg-type]
-            raise ControlError(
-                Refusal.DATA,
-                f"variable #{number} cannot be {value!r:.40}",
-                hint="Give a number below 1e12, or null.",
-            )
-        self._mate.macros.set(number, float(value))  # type: ignore[arg-type]
+        self._mate.macros.set(number, variable_value(number, value))
 
     def _named(self, number: int) -> NamedValue:
         mate = self._mate
         if number in _LOCALS:
-            return NamedValue(f"#{number}", mate.local_variable(number), "local", writable=False)
+            return NamedValue(f"#{number}", mate.custom_macros.local(number), "local", writable=False)
         if number in mate.macros:
-            return NamedValue(f"#{number}", mate.macros.get(number), "common", -_LARGEST, _LARGEST)
+            return NamedValue(f"#{number}", mate.macros.get(number), "common", -LARGEST, LARGEST)
         return NamedValue(f"#{number}", mate.custom_macros.at_rest(number), "system", writable=False)
 
 
@@ -155,11 +146,10 @@ def set_tool(mate: PowerMate, number: int, values: Mapping[str, float | str]) ->
         )
     offsets = mate.tool_offsets
     length = values.get(_LENGTH, 0.0)
-    if not isinstance(length, int | float) or not math.isfinite(length):
-        raise ControlError(Refusal.DATA, f"a length of {length!r:.40}", hint="Give mm.")
-    per_mm = (
-        10.0**mate.increment.decimals if not mate.inch_input else 10.0 ** (mate.increment.decimals + 1) / 25.4
-    )
+    if not is_number(length):
+        raise ControlError(Refusal.DATA, f"a length of {shown(length, 40)}", hint="Give mm.")
+    decimals = mate.units.increment.decimals
+    per_mm = 10.0**decimals if not mate.units.inch_input else 10.0 ** (decimals + 1) / 25.4
     try:
         offsets.set_all({number: round(length * per_mm)})
     except KeyError:
@@ -185,7 +175,7 @@ def set_offset(mate: PowerMate, name: str, values: Mapping[str, float], *, add: 
             hint="Give EXT, G54 to G59, G54.P1 to G54.P300.",
         )
     before = mate.control.offsets.get(name, {})
-    most = mate.increment.offset_limit * 10.0**-mate.increment.decimals
+    most = mate.units.increment.offset_limit * 10.0**-mate.units.increment.decimals
     for axis, value in values.items():
         total = value + (before.get(axis, 0.0) if add else 0.0)
         if not abs(total) <= most:
@@ -195,7 +185,3 @@ def set_offset(mate: PowerMate, name: str, values: Mapping[str, float], *, add: 
                 hint=f"Give up to {most:g} mm or degree.",
             )
     mate.control.offsets.set(name, values, add=add)
-
-
-def _whole(name: str) -> int:
-    return int(name) if name.isascii() and name.isdecimal() and len(name) <= 6 else -1

@@ -2,18 +2,16 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, replace
 from enum import StrEnum
 from typing import Any
 
 from polycnc.cnc import AfterManual, Control, ControlError, OnModeChange, Refusal
-from polycnc.errors import PolycncError
+from polycnc.errors import PolycncError, shown
 from polycnc.nc.macro import MacroLanguage, MacroVariables
 from polycnc.servers.machines import NamedValue, Single, no_such
-
-_LARGEST = 1e12
+from polycnc.servers.process._macro_numbers import variable_number, variable_value
 
 
 @dataclass(frozen=True, slots=True)
@@ -82,7 +80,7 @@ def _checked(row: _Row, value: object) -> Any:
         hint = f"Give one of {', '.join(words)}."
         if value in words:
             return row.kind(value)
-    raise ControlError(Refusal.DATA, f"{row.name} cannot be {value!r:.40}", hint=hint)
+    raise ControlError(Refusal.DATA, f"{row.name} cannot be {shown(value, 40)}", hint=hint)
 
 
 class MacroValues:
@@ -99,27 +97,21 @@ class MacroValues:
 
     def get(self, name: str) -> NamedValue:
         """Return one by its number, with or without its `#`."""
-        number = _number(name)
+        number = variable_number(name)
         if self._variables().kind(number) is None:
             raise no_such("variable", name)
         return self._named(number)
 
     def set(self, name: str, value: Single | Mapping[str, Single]) -> None:
         """Set one that is not of a macro alone; None makes it vacant."""
-        number = _number(name)
+        number = variable_number(name)
         if not self.get(name).writable:
             raise ControlError(
                 Refusal.PROTECTED, f"variable #{number} can only be read", hint="Set it in a program."
             )
-        is_number = isinstance(value, int | float) and not isinstance(value, bool)
-        if value is not None and not (is_number and math.isfinite(value) and abs(value) < _LARGEST):  # type: ignore[arg-type]
-            raise ControlError(
-                Refusal.DATA,
-                f"variable #{number} cannot be {value!r:.40}",
-                hint="Give a number below 1e12, or null.",
-            )
+        given = variable_value(number, value)
         try:
-            self._variables().set_all({number: None if value is None else float(value)})  # type: ignore[arg-type]
+            self._variables().set_all({number: given})
         except PolycncError as error:
             raise ControlError(Refusal.DATA, error.what, hint=error.hint) from None
 
@@ -138,8 +130,3 @@ class MacroValues:
         variables = self._variables()
         kind = variables.kind(number) or ""
         return NamedValue(f"#{number}", variables.get(number), kind, writable=kind in ("common", "permanent"))
-
-
-def _number(name: str) -> int:
-    name = name.removeprefix("#")
-    return int(name) if name.isascii() and name.isdecimal() and len(name) <= 6 else -1

@@ -26,6 +26,7 @@ from polycnc.servers.process._kinds import KINDS
 from polycnc.servers.process._made import Machinery, Made
 
 _SHARE_S = 0.01  # of the wall clock that all machines together may take before a door answers
+_CLOSE_S = 0.6  # that doors have to end their connections
 _MOST_PROGRAM_BYTES = 64 << 20
 Load = Callable[[str, bytes], None]
 
@@ -56,6 +57,8 @@ class Serving:
     on_error: Callable[[str], None] = lambda text: None
     machines: list[ServedMachine] = field(default_factory=list)
     doors: list[tuple[str, Door]] = field(default_factory=list)
+    served_by: list[Sequence[ServedMachine]] = field(default_factory=list)
+    """The machines of each door."""
     programs: dict[str, tuple[Load, Path]] = field(default_factory=dict)
     told: set[str] = field(default_factory=set)
     """Kinds of errors that `on_error` has been told of, once each."""
@@ -84,7 +87,12 @@ class Serving:
             door = kind.open_door(machines, at)
             await door.start()
             self.doors.append((kind.name, door))
+            self.served_by.append(machines)
             self.log.write("open", door=kind.name, address=door.said)
+
+    def doors_of_machines(self) -> list[tuple[str, Door, Sequence[ServedMachine]]]:
+        """Return the doors, each with its machines."""
+        return [(*door, machines) for door, machines in zip(self.doors, self.served_by, strict=True)]
 
     async def begin(self) -> None:
         """Start the programs and let time begin; what has to be compiled is compiled here."""
@@ -109,9 +117,11 @@ class Serving:
                 each.result()
 
     async def close(self) -> None:
-        """Close every door, and switch the machines off."""
-        for _, door in self.doors:
-            await door.close()
+        """Close every door, all at once, and switch the machines off; a door that takes its time is not waited for."""
+        tell_errors(asyncio.get_running_loop(), lambda kind, text: self.log.write(kind, text=text))
+        closing = [asyncio.ensure_future(door.close()) for _, door in self.doors]
+        if closing:
+            await asyncio.wait(closing, timeout=_CLOSE_S)
         for machine in self.machines:
             machine.close()
         self.log.write("end")

@@ -14,7 +14,7 @@ from polycnc.servers.machines import LOOPBACK, DoorKind, Log, Scenario, ServedMa
 from polycnc.servers.mtconnect import USUAL_VERSION, VERSIONS
 from polycnc.servers.process import DOORS, Machinery, MachineWanted, focas_kind, plant_kinds
 from polycnc.servers.scenarios import Story, load_script
-from polycnc.servers.setup._file import MachineTable, load_serve_file
+from polycnc.servers.setup._file import MachineTable, ServeFile, load_serve_file
 
 _MOST_PORT = 65535
 _MOST_TOKEN_BYTES = 4096
@@ -44,6 +44,7 @@ class Flags:
     mtconnect: str = USUAL_VERSION
     node_sets: Path | None = None
     scenario: Path | None = None
+    part: str | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,6 +55,9 @@ class Plan:
     shared: tuple[tuple[DoorKind, Wanted], ...]
     log: Log
     warnings: tuple[str, ...] = ()
+    processes: int = 1
+    """Among how many the machines are to be shared; what this plan says is all of them then."""
+    metrics: int | None = None
 
     @property
     def lasting(self) -> tuple[str, ...]:
@@ -119,7 +123,7 @@ def plan_of(flags: Flags) -> Plan:
     check_version(flags.mtconnect)
     rows = (focas_kind(flags.profile), *plant_kinds(flags.mtconnect))
     table = {**DOORS, **{row.name: row for row in rows}}
-    machines, shared, node_sets = _asked(flags, table)
+    machines, shared, node_sets, said = _asked(flags, table)
     keep = next(
         (_kept(each.machinery.memory) for each in machines if each.machinery.memory is not None), None
     )
@@ -154,20 +158,22 @@ def plan_of(flags: Flags) -> Plan:
         tuple(exposed(*door) for door in shared),
         log,
         tuple(warnings),
+        1 if said is None or flags.part is not None else said.processes,
+        None if said is None else said.metrics,
     )
 
 
 def _asked(
     flags: Flags, table: Mapping[str, DoorKind]
-) -> tuple[list[MachineWanted], list[tuple[DoorKind, Wanted]], Path | None]:
-    """Return the machines, the doors that they share, and the folder of node sets."""
+) -> tuple[list[MachineWanted], list[tuple[DoorKind, Wanted]], Path | None, ServeFile | None]:
+    """Return the machines, the doors that they share, the folder of node sets, and the file that says so."""
     named = [kind for kind, machine in flags.kinds.items() if machine is not None]
     if flags.file is None:
         if len(named) != 1:
             raise UsageError(
                 "which machine shall be served?", hint="Write --fanuc, --plain mill3, or a file of machines."
             )
-        return *_of_flags(flags, named[0], table), flags.node_sets
+        return *_of_flags(flags, named[0], table), flags.node_sets, None
     if named:
         raise UsageError("a file and a machine at once", hint="Put the machine into the file.")
     for key, given in (("opcua_nodesets", flags.node_sets), ("scenario", flags.scenario)):
@@ -175,7 +181,7 @@ def _asked(
             raise UsageError(
                 f"{given} and a file of machines at once", hint=f'Write {key} = "..." into the file.'
             )
-    return _of_file(flags.file, table)
+    return _of_file(flags.file, table, flags.part)
 
 
 def _of_flags(
@@ -208,11 +214,17 @@ def _of_flags(
 
 
 def _of_file(
-    path: Path, table: Mapping[str, DoorKind]
-) -> tuple[list[MachineWanted], list[tuple[DoorKind, Wanted]], Path | None]:
+    path: Path, table: Mapping[str, DoorKind], part: str | None
+) -> tuple[list[MachineWanted], list[tuple[DoorKind, Wanted]], Path | None, ServeFile]:
     said = load_serve_file(path)
-    machines = []
-    for each in said.machine:
+    number = 0 if part is None else _number_of(part, said.processes)
+    machines, count = [], len(said.machine)
+    first, last = (
+        (0, count)
+        if part is None
+        else (count * number // said.processes, count * (number + 1) // said.processes)
+    )
+    for each in said.machine[first:last]:
         doors = [_row(table, name, port, shared=False) for name, port in each.doors.items()]
         machines.append(
             MachineWanted(
@@ -225,8 +237,18 @@ def _of_file(
                 _story(_beside(path, each.scenario), _beside(path, each.faults)),
             )
         )
-    shared = [_row(table, name, port, shared=True) for name, port in said.doors.items()]
-    return machines, shared, _beside(path, said.opcua_nodesets)
+    shared = [
+        _row(table, name, port + number if port else 0, shared=True) for name, port in said.doors.items()
+    ]
+    return machines, shared, _beside(path, said.opcua_nodesets), said
+
+
+def _number_of(part: str, processes: int) -> int:
+    """Return which process of a fleet this is, from 0."""
+    number, _, of = part.partition("/")
+    if not (number.isdigit() and of == str(processes) and 1 <= int(number) <= processes):
+        raise UsageError(f"{part[:20]} is no part of {processes} processes", hint="Leave --part out.")
+    return int(number) - 1
 
 
 def _kept(memory: Path) -> Path:

@@ -32,12 +32,7 @@ class BoardAxis(Axis):
 
     def __init__(self, board: CommandedBoard, index: int) -> None:
         super().__init__(
-            board.config,
-            board.state,
-            board.kernel,
-            index,
-            lambda: board.inputs,
-            board.units_in_use.clear,
+            board.config, board.state, board.kernel, index, lambda: board.inputs, board.units_in_use.clear
         )
         self.board = board
 

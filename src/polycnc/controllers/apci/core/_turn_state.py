@@ -113,10 +113,10 @@ class Turns(NamedTuple):
     place: Whole  # [PLACES] scratch: where that was
 
 
-def make_turns(tasks: int = TASKS) -> Turns:
-    """Return room for so many tasks, without programs."""
+def make_turns() -> Turns:
+    """Return room for the tasks, without programs."""
     return Turns(
-        task=np.zeros(tasks, TASK_ROW),
+        task=np.zeros(TASKS, TASK_ROW),
         budget=np.zeros(1, np.int64),
         due=np.full(1, TASKS),
         code=np.zeros((0, CODE_COLUMNS), np.int64),
@@ -124,13 +124,13 @@ def make_turns(tasks: int = TASKS) -> Turns:
         condition=np.zeros((0, 2), np.int64),
         routine=np.zeros((0, 4), np.int64),
         cells=np.zeros(0, np.int8),
-        stack=np.zeros((tasks, STACK_CELLS)),
-        stack_kind=np.zeros((tasks, STACK_CELLS), np.int8),
-        memory=np.zeros((tasks, MEMORY_CELLS)),
-        memory_kind=np.zeros((tasks, MEMORY_CELLS), np.int8),
-        frame=np.zeros((tasks, FRAMES, 2), np.int64),
+        stack=np.zeros((TASKS, STACK_CELLS)),
+        stack_kind=np.zeros((TASKS, STACK_CELLS), np.int8),
+        memory=np.zeros((TASKS, MEMORY_CELLS)),
+        memory_kind=np.zeros((TASKS, MEMORY_CELLS), np.int8),
+        frame=np.zeros((TASKS, FRAMES, 2), np.int64),
         slot=np.zeros(1),
-        buffer=np.zeros((tasks, BUFFER_BYTES), np.uint8),
+        buffer=np.zeros((TASKS, BUFFER_BYTES), np.uint8),
         kept=np.zeros(KEPT_CELLS),
         kept_frame=np.zeros((KEPT_FRAMES, 2), np.int64),
         place=np.zeros(PLACES, np.int64),

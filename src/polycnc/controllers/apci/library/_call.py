@@ -11,15 +11,7 @@ from typing import Annotated, Any, TypeAlias
 
 from polycnc.controllers.apci.board._environment import InterruptRoutine
 from polycnc.controllers.apci.board._numbers import is_number
-from polycnc.controllers.apci.board._records import (
-    AS,
-    CBCNCT,
-    CDBUF,
-    CIBUF,
-    CNCTS,
-    ROSI,
-    TSRP,
-)
+from polycnc.controllers.apci.board._records import AS, CBCNCT, CDBUF, CIBUF, CNCTS, ROSI, TSRP
 from polycnc.controllers.apci.library._session import UNKNOWN_ERROR, Session
 from polycnc.controllers.library import (
     INOUT,

@@ -10,13 +10,7 @@ import re
 from collections.abc import Sequence
 from pathlib import Path
 
-from polycnc.controllers.apci.board._codes import (
-    CARD_NOT_THERE,
-    BootCode,
-    InitCode,
-    Status,
-    TransferCode,
-)
+from polycnc.controllers.apci.board._codes import CARD_NOT_THERE, BootCode, InitCode, Status, TransferCode
 from polycnc.controllers.apci.board._declared import MAXAXIS, ROSI, TSRP, CppString
 from polycnc.controllers.apci.board._system_file import parse_system_file
 from polycnc.controllers.apci.core._registers import BoardType

@@ -7,13 +7,7 @@ from dataclasses import dataclass
 from polycnc.controllers.apci.sap import _commands
 from polycnc.controllers.apci.sap._commands import DOUBLE, INTEGER, TABLE, Axes, Command
 from polycnc.controllers.apci.sap._names import RoutineSymbol, VariableSymbol
-from polycnc.controllers.apci.sap._syntax import (
-    Argument,
-    Call,
-    Name,
-    Place,
-    Text,
-)
+from polycnc.controllers.apci.sap._syntax import Argument, Call, Name, Place, Text
 from polycnc.controllers.apci.sap._values import ValueCompiler
 
 

@@ -12,10 +12,7 @@ from polycnc.controllers.apci.sap import _commands
 from polycnc.controllers.apci.sap._commands import BOOLEAN, DOUBLE
 from polycnc.controllers.apci.sap._lexer import SourceText
 from polycnc.controllers.apci.sap._program import Instruction
-from polycnc.controllers.apci.sap._syntax import (
-    Place,
-    Routine,
-)
+from polycnc.controllers.apci.sap._syntax import Place, Routine
 from polycnc.errors import ProgramError
 
 

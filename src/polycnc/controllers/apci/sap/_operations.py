@@ -6,11 +6,7 @@ from collections.abc import Callable
 from typing import Any
 
 from polycnc.controllers.apci.sap._arithmetic import BINARY, UNARY
-from polycnc.controllers.apci.sap._faults import (
-    INDEX_RANGE,
-    STACK_OVERFLOW,
-    Fault,
-)
+from polycnc.controllers.apci.sap._faults import INDEX_RANGE, STACK_OVERFLOW, Fault
 from polycnc.controllers.apci.sap._machine import FRAME_CELLS, STACK_CELLS, Build, Machine, Step
 from polycnc.controllers.apci.sap._program import cell_values
 

@@ -10,14 +10,7 @@ from collections.abc import Callable
 
 from polycnc.controllers.apci.sap._lexer import END, NAME, SourceText, Token
 from polycnc.controllers.apci.sap._statement_parser import StatementParser
-from polycnc.controllers.apci.sap._syntax import (
-    Block,
-    Constant,
-    Expression,
-    Routine,
-    Source,
-    Variable,
-)
+from polycnc.controllers.apci.sap._syntax import Block, Constant, Expression, Routine, Source, Variable
 from polycnc.errors import ProgramError
 
 _TYPES = {"integer": "i", "longint": "i", "double": "d", "real": "d", "boolean": "b"}

@@ -8,6 +8,7 @@ from enum import IntEnum
 from typing import TypeAlias
 
 from polycnc.controllers.bosch.ncs._buffers import INVALID_PARAMETER, held
+from polycnc.errors import shown
 from polycnc.nc.cpl import BLOCKED, Box, CharacterField, Fault, Field
 
 MOST = 20
@@ -111,7 +112,7 @@ def _fitting(kind: str, value: object) -> object:
         fits = isinstance(value, int | float) and not isinstance(value, bool)
         fits = fits and (kind != "I" or (float(value).is_integer() and -(2**31) <= value < 2**31))  # type: ignore[arg-type,operator]
     if not fits:
-        raise ClientError(f"{value!r} is not of type {kind}")
+        raise ClientError(f"{shown(value)} is not of type {kind}")
     return value if isinstance(value, str | bool) else held(kind, value)  # type: ignore[arg-type]
 
 

@@ -286,10 +286,7 @@ def _axis_rows() -> list[_Row]:
     return [*rows, _Row(25, ("axis",), _channel_of)]
 
 
-_PRECISION = [
-    _Row(328, (1,), lambda d: d.precision[0], 1),
-    _Row(328, (2,), lambda d: d.precision[1]),
-]
+_PRECISION = [_Row(328, (1,), lambda d: d.precision[0], 1), _Row(328, (2,), lambda d: d.precision[1])]
 _OVERRIDES = [
     _Row(2, (1,), lambda d: d.feed_override),
     _Row(2, (3,), lambda d: d.spindle_overrides.get(1, 0.0)),

@@ -26,7 +26,7 @@ class Diagnosis:
 
 def _alarm(number: int) -> Callable[[PowerMate, int], int]:
     def value(power_mate: PowerMate, axis: int) -> int:
-        name = power_mate.axis_name(axis)
+        name = power_mate.units.axis_name(axis)
         alarms = shown(power_mate.control.alarms.active)
         return int(any(each.number == number and each.axis == name for each in alarms))
 
@@ -44,7 +44,7 @@ def _stopped(power_mate: PowerMate, axis: int) -> int:
 
 
 def _axis_state(power_mate: PowerMate, axis: int) -> int:
-    status = power_mate.control.axes()[power_mate.axis_name(axis)]
+    status = power_mate.control.axes()[power_mate.units.axis_name(axis)]
     return 0 if not status.moving else 2 if status.manual != "none" else 1
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from enum import IntEnum
 
@@ -24,6 +24,13 @@ class CommonRange(IntEnum):
     SMALL = 0
     LARGE = 1
     MIDDLE = 2
+
+    @classmethod
+    def of(cls, has_option: Callable[[str], bool]) -> CommonRange:
+        """Return those of a control with these options."""
+        if has_option("macro_variables_600"):
+            return cls.LARGE
+        return cls.MIDDLE if has_option("macro_variables_300") else cls.SMALL
 
 
 _MACRO_TYPES = {CommonRange.SMALL: "a", CommonRange.LARGE: "b", CommonRange.MIDDLE: "c"}

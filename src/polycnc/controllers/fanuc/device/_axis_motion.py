@@ -6,6 +6,7 @@ feed override holds, and so does a hold. An alarm, a reset or the emergency stop
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 
 from polycnc.cnc import ControlError, ControlEvent, Emergency
@@ -53,6 +54,26 @@ class AxisMotion:
                     self._power.control.manual.stop(self._axis_name(axis))
             path.blocks.clear()
             path.begun = False
+
+    def advance(self, cycles: int, until: int | Callable[[], bool] | None) -> int:
+        """Let time pass, in stretches that end where direct commands have to be looked at; return the cycles."""
+        control = self._power.control
+        events = 0 if until is None or callable(until) else int(until)
+        done = 0
+        while done < cycles:
+            self.look()
+            step = min(cycles - done, self.horizon())
+            watch = until if callable(until) else events | self.EVENTS
+            busy = self.busy
+            passed = control.advance(step, until=watch if busy else until)
+            done += passed
+            over = callable(until) and until()
+            if over or control.has_enough or (passed < step and not busy) or not passed:
+                break
+            if control.raised & events:
+                break
+        self.look()
+        return done
 
     # ------------------------------------------------------------------ what is known
 

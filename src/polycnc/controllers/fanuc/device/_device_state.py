@@ -7,11 +7,13 @@ from dataclasses import dataclass, field
 from enum import Enum, auto
 
 from polycnc.controllers.fanuc.device._modes import PowerMateMode
+from polycnc.errors import UsageError
 
 PATHS = 6
 SP, ESP, ERS = 1 << 5, 1 << 4, 1 << 7
 """Signals at G8: no feed hold, no emergency stop, external reset."""
 SERVO_OFF = 126
+_KEYS = frozenset({1, 2, 3, 4})
 AT_POWER_ON = {4: 0, 7: 0, 8: SP | ESP, SERVO_OFF: 0}
 
 
@@ -134,3 +136,14 @@ class DeviceState:
     def of(cls, axes: int, inch: bool) -> DeviceState:
         """Return what there is when the power comes on."""
         return cls(SignalState([255] * axes), AxisMotionState.of(axes), inch)
+
+    def turn_key(self, on: bool, key: int | None) -> None:
+        """Turn a memory protection key (1 to 4, None: all), on is protected.
+
+        Raises:
+            UsageError: There is no such key.
+        """
+        if key is not None and key not in _KEYS:
+            raise UsageError(f"there is no key {key}", hint="Keys are 1 to 4.")
+        turned = _KEYS if key is None else {key}
+        self.protection_keys = self.protection_keys | turned if on else self.protection_keys - turned

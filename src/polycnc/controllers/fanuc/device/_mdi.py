@@ -35,10 +35,7 @@ class MdiProgram:
             ControlError: Not in MDI, or a program is being executed or interrupted.
         """
         stream = ProgramStream(
-            tv_check=self._parameters.bit(0, 0),
-            ends_at_m=False,
-            on_program=_anything,
-            on_block=_anything,
+            tv_check=self._parameters.bit(0, 0), ends_at_m=False, on_program=_anything, on_block=_anything
         )
         stream.take(data)
         if not stream.ended:

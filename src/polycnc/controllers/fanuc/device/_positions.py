@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from typing import NamedTuple
 
 from polycnc.controllers.fanuc.device._device_state import AxisMotionState
@@ -11,7 +10,6 @@ from polycnc.controllers.fanuc.device._units import Units
 
 _START_OFFSET = "G54"
 _LENGTH_AXIS = "Z"
-_MM_MIN = 60.0
 _INCH_FEED = 100.0 / 25.4  # 0.01 inch/min
 
 
@@ -57,13 +55,11 @@ class Positions:
 
     def feed(self) -> int:
         """Return the actual feed: mm/min, with inch input 0.01 inch/min; of rotary axes alone deg/min."""
-        squares = {"mm": 0.0, "deg": 0.0}
-        for axis in self._power.control.axes().values():
-            squares[axis.unit] += axis.velocity * axis.velocity
-        speeds = {unit: math.sqrt(square) for unit, square in squares.items()}
-        if speeds["mm"] > 0.0:
-            return round(speeds["mm"] * _MM_MIN * (_INCH_FEED if self._units.inch_input else 1.0))
-        return round(speeds["deg"] * _MM_MIN)
+        control = self._power.control
+        feed = control.channel_status().feed.actual
+        moving = {axis.unit for axis in control.axes().values() if axis.velocity != 0.0}
+        is_inch = self._units.inch_input and moving != {"deg"}
+        return round(feed * (_INCH_FEED if is_inch else 1.0))
 
     def preset_relative(self, values: dict[int, int]) -> None:
         """Let the relative positions of axes (from 1) be these, in increments."""

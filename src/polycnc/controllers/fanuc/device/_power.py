@@ -105,7 +105,13 @@ class Power:
                 self.raise_alarm(NAME_ALARM, f"PARAMETER 1020 OF AXIS {axis}: {name}", axis=axis)
 
     def raise_alarm(self, number: int, text: str = "", *, axis: int | None = None) -> None:
-        """Put an alarm on by its number; axes count from 1."""
+        """Put an alarm on by its number; axes count from 1.
+
+        Raises:
+            UsageError: The number is none, or there is no such axis.
+        """
+        if not 0 <= number <= 5999 or (axis is not None and not 1 <= axis <= self._parameters.axes):
+            raise UsageError(f"there is no alarm {number} of axis {axis}", hint="Numbers are 0 to 5999.")
         name = None if axis is None else self._units.axis_name(axis)
         self.control.put_alarm(f"{PREFIX}{number}", axis=name, detail=text)
 
@@ -113,6 +119,11 @@ class Power:
     def alarm_bits(self) -> AlarmBit:
         """The groups of the alarms that are on."""
         return alarm_bits(self.control.alarms.active)
+
+    @property
+    def blocks_transfers(self) -> bool:
+        """Whether alarm 000 or 101 keeps programs from being moved."""
+        return bool(self.alarm_bits & (AlarmBit.PS000 | AlarmBit.PS101))
 
     # ------------------------------------------------------------------ parameters
 

@@ -9,24 +9,13 @@ from collections.abc import Callable, Iterable, Sequence
 from functools import partial
 from pathlib import Path
 
-from polycnc.cnc import (
-    Control,
-    ControlError,
-    Refusal,
-    Script,
-    Status,
-    Step,
-)
+from polycnc.cnc import Control, ControlError, Refusal, Script, Status, Step
 from polycnc.controllers.fanuc.data._bindings import bound
 from polycnc.controllers.fanuc.data._configuration import Configuration
-from polycnc.controllers.fanuc.data._increment import Increment, Scale
+from polycnc.controllers.fanuc.data._increment import Increment
 from polycnc.controllers.fanuc.data._macro_variables import CommonRange, SharedMacros
-from polycnc.controllers.fanuc.data._parameter_rows import ParameterRow
 from polycnc.controllers.fanuc.data._parameters import Parameters
 from polycnc.controllers.fanuc.data._tool_offsets import ToolOffsets
-from polycnc.controllers.fanuc.device._alarms import (
-    AlarmBit,
-)
 from polycnc.controllers.fanuc.device._axis_motion import AxisMotion
 from polycnc.controllers.fanuc.device._device_state import DeviceState
 from polycnc.controllers.fanuc.device._execution import Execution
@@ -44,13 +33,11 @@ from polycnc.controllers.fanuc.device._power import Fitted, Power
 from polycnc.controllers.fanuc.device._programs import Programs, memory_data, name_of
 from polycnc.controllers.fanuc.device._remote_program import RemoteProgram
 from polycnc.controllers.fanuc.device._signals import Buttons, Signals
-from polycnc.controllers.fanuc.device._snapshot import DEVICE, PowerMateSnapshot
+from polycnc.controllers.fanuc.device._skip_signal import SkipSignal
+from polycnc.controllers.fanuc.device._snapshot import PowerMateSnapshot
 from polycnc.controllers.fanuc.device._transfer import Transfer
 from polycnc.controllers.fanuc.device._units import Units
-from polycnc.errors import UsageError
-from polycnc.machine import Clock, Machine, Snapshot, SnapshotError, Store, copied, restore_state
-
-_ALL_KEYS = frozenset({1, 2, 3, 4})
+from polycnc.machine import Clock, Machine, Snapshot, Store, copied, restore_state
 
 
 class PowerMate:
@@ -95,40 +82,39 @@ class PowerMate:
         self.power_ups = 0  # how often it was switched off and on
         begun = defaults(default_names(self.axes, rotary), Increment(increment), inch_input, inch_output)
         elsewhere = bound(lambda: self.control, lambda: self.units)
-        changed = self._parameters_changed
-        self.parameters = parameters = Parameters(store, self.axes, begun, elsewhere, changed)
+        self.parameters = parameters = Parameters(
+            store, self.axes, begun, elsewhere, lambda rows: self.power.parameters_changed(rows)
+        )
         self.state = state = DeviceState.of(self.max_axis, parameters.bit(0, 2))
         """What does not outlast switching off."""
         self.units = units = Units(parameters, state, lambda: self.machine.config)
         fitted = Fitted(script, servo, memory_data(characters, most_programs), self.has_option(MACRO_OPTION))
         self.power = power = Power(store, parameters, units, state, fitted)
-        self.macros = SharedMacros(store, self._common_range())
+        self.macros = SharedMacros(store, CommonRange.of(self.has_option))
         self.programs = Programs(store, power, parameters, state)
         self.mdi = MdiProgram(power, parameters, state.mdi)
         self.remote = RemoteProgram(lambda: self.mode, lambda: self.control)
         self.execution = Execution(power, self.programs, state)
         self.positions = Positions(power, units, state.axis_motion)
+        self.skip = SkipSignal(power, self.positions, state, self.axes)
         self.tool_offsets = ToolOffsets(store, power, units, offsets)
         self.history = Histories(store, power, lambda address: self.signals.f(address), state.sampling)
         note = self.history.note_signal
-        read = power, parameters, self.tool_offsets, state.signals, state.macros, note
-        self.custom_macros = Macros(
-            self.macros, power, parameters, partial(PowerMateVariables, *read), state.macros
-        )
-        buttons = Buttons(
-            *(self.cycle_start, self.feed_hold, self.reset, self.emergency_stop, self.select_mode),
-            protect=lambda on, key: self.protect_key(on, key=key),
-        )
-        ports = power, parameters, units, self.positions, self.custom_macros, state
-        self.signals = Signals(*ports, buttons, lambda address: self.panel.image(address), note)
+        ports = parameters, self.tool_offsets, state.signals, state.macros, note
+        variables = partial(PowerMateVariables, power, *ports)
+        self.custom_macros = Macros(self.macros, power, parameters, variables, state.macros)
+        pressed = self.cycle_start, self.feed_hold, self.reset, self.emergency_stop, self.select_mode
+        buttons = Buttons(*pressed, protect=state.turn_key)
+        read = power, parameters, units, self.positions, self.custom_macros, state
+        self.signals = Signals(*read, buttons, lambda address: self.panel.image(address), note)
         self.panel = Panel(store, self.signals, state, self.select_mode)
-        self.pmc = PmcMemory(store, self.signals, state.pmc, note, self.skip_signal)
+        self.pmc = PmcMemory(store, self.signals, state.pmc, note, self.skip.give)
         self.axis_motion = AxisMotion(power, units, self.positions, state.signals, state.axis_motion)
         self.modal_data = ModalData(self.execution, self.programs, state.mdi, parameters, units)
         self.configuration = Configuration()
         self._switch_on(None)
-        if self.selected not in self.programs:
-            self.unselect()
+        if self.programs.selected not in self.programs:
+            self.programs.unselect()
         self._begin_signals()
 
     # ------------------------------------------------------------------ what it is
@@ -151,37 +137,6 @@ class PowerMate:
     def has_option(self, name: str) -> bool:
         """Whether an option is fitted; the empty name is no option and always there."""
         return not name or self.options is True or (self.options is not False and name in self.options)
-
-    @property
-    def increment(self) -> Increment:
-        """The increment system (parameter 1004)."""
-        return self.units.increment
-
-    @property
-    def inch_input(self) -> bool:
-        """Whether programs and positions are in inch now: G20 and G21 say so, and 0000#2 until one does."""
-        return self.state.inch
-
-    @property
-    def inch_output(self) -> bool:
-        """Whether the machine counts in inch (1001#0)."""
-        return self.units.inch_output
-
-    def axis_name(self, axis: int) -> str:
-        """Return the name of an axis, which counts from 1."""
-        return self.units.axis_name(axis)
-
-    def is_rotary(self, axis: int) -> bool:
-        """Whether an axis (from 1) is rotary."""
-        return self.units.is_rotary(axis)
-
-    def input_scale(self, axis: int) -> Scale:
-        """Return the scale of positions as programs see them; axes count from 1."""
-        return self.units.input_scale(axis)
-
-    def output_scale(self, axis: int) -> Scale:
-        """Return the scale of machine positions and stroke limits; axes count from 1."""
-        return self.units.output_scale(axis)
 
     # ------------------------------------------------------------------ what the operator does
 
@@ -209,20 +164,6 @@ class PowerMate:
         """
         self.programs.select(number)
 
-    @property
-    def selected(self) -> int:
-        """The number of the selected program, 0 for none."""
-        return self.programs.selected
-
-    def unselect(self) -> None:
-        """Have no program selected."""
-        self.programs.unselect()
-
-    @property
-    def cursor(self) -> int:
-        """The line of the selected program at which a start begins, from 0."""
-        return self.state.cursor
-
     def set_cursor(self, line: int) -> None:
         """Let the next start in MEM begin at a line of the selected program, from 0."""
         self.state.cursor = line
@@ -239,7 +180,7 @@ class PowerMate:
                 Refusal.HELD, "feed hold is given (*SP)", hint="Take feed hold away, at G8#5 or on the panel."
             )
         channel = self.control.channels[0]
-        self.remote.before_start(name_of(self.selected) if self.selected else None)
+        self.remote.before_start(name_of(self.programs.selected) if self.programs.selected else None)
         if not channel.interrupted:
             self.custom_macros.begin()
             self.signals.apply_lock()
@@ -281,23 +222,7 @@ class PowerMate:
 
         While it is on it ends skip moves (G31): the axes brake, and the next block goes on from there.
         """
-        if on and not self.state.skip:
-            self._note_skip()
-        self.state.skip = on
-        self.control.channels[0].set_skip_signal(on)
-
-    def _note_skip(self) -> None:
-        self.state.skip_positions = tuple(each.absolute for each in self.positions.read())
-
-    @property
-    def skip_is_on(self) -> bool:
-        """Whether the skip signal is on."""
-        return self.state.skip
-
-    @property
-    def skip_positions(self) -> tuple[int, ...]:
-        """Where the axes were at the last rising edge of the skip signal, in increments; zeros before the first."""
-        return self.state.skip_positions or (0,) * self.axes
+        self.skip.give(on)
 
     def operator_message(self, number: int, text: str) -> None:
         """Show a message to the operator.
@@ -313,16 +238,7 @@ class PowerMate:
         Raises:
             UsageError: There is no such key.
         """
-        if key is not None and key not in _ALL_KEYS:
-            raise UsageError(f"there is no key {key}", hint="Keys are 1 to 4.")
-        keys = _ALL_KEYS if key is None else frozenset({key})
-        self.state.protection_keys = (
-            self.state.protection_keys | keys if on else self.state.protection_keys - keys
-        )
-
-    def local_variable(self, number: int) -> float | None:
-        """Return local variable #1 to #33 of the macro that is being executed; None is vacant, as without a macro."""
-        return self.custom_macros.local(number)
+        self.state.turn_key(on, key)
 
     def start_compare(self) -> None:
         """Begin to compare what `take` of the transfer gets with the registered programs, as on the screen.
@@ -347,19 +263,7 @@ class PowerMate:
         Raises:
             UsageError: The number is none, or there is no such axis.
         """
-        if not 0 <= number <= 5999 or (axis is not None and not 1 <= axis <= self.axes):
-            raise UsageError(f"there is no alarm {number} of axis {axis}", hint="Numbers are 0 to 5999.")
         self.power.raise_alarm(number, text, axis=axis)
-
-    @property
-    def alarm_bits(self) -> AlarmBit:
-        """The groups of the alarms that are on."""
-        return self.power.alarm_bits
-
-    @property
-    def transfers_blocked(self) -> bool:
-        """Whether alarm 000 or 101 keeps programs from being moved."""
-        return bool(self.alarm_bits & (AlarmBit.PS000 | AlarmBit.PS101))
 
     def power_cycle(self) -> None:
         """Switch off and on: durable data and the positions of the axes stay, everything else begins anew."""
@@ -367,15 +271,16 @@ class PowerMate:
         old.timers.save()
         self.power_ups += 1
         self.transfer = None
-        self.state.skip, self.state.skip_positions, self.state.cursor = False, (), 0
+        self.skip.clear()
+        self.state.cursor = 0
         self.mdi.clear()
         self.state.inch = self.parameters.bit(0, 2)
         self.custom_macros.switched_on()
         self._switch_on(old.machine)
         self.control.clock.go_back(old.clock.cycles, old.clock.epoch)
         self.state.mode = PowerMateMode.MEM
-        if self.selected:
-            self.control.select_program(name_of(self.selected))
+        if self.programs.selected:
+            self.control.select_program(name_of(self.programs.selected))
         self._begin_signals()
 
     # ------------------------------------------------------------------ time and state
@@ -385,31 +290,13 @@ class PowerMate:
         self.power.take_over()
         channel = self.control.channels[0]
         active = channel.active
-        done = self._pass(cycles, until)
+        done = self.axis_motion.advance(cycles, until)
+        self.history.sample(force=False)
         self.custom_macros.keep()
         block = channel.executed if active else None
         if block is not None and block.modal.inch is not self.state.inch:
             self.parameters.set(0, self.parameters.value(0) ^ 4)
         self.power.take_over()
-        return done
-
-    def _pass(self, cycles: int, until: int | Callable[[], bool] | None) -> int:
-        """Let time pass, in stretches that end where direct commands have to be looked at."""
-        events = 0 if until is None or callable(until) else int(until)
-        done = 0
-        while done < cycles:
-            self.axis_motion.look()
-            step = min(cycles - done, self.axis_motion.horizon())
-            watch = until if callable(until) else events | self.axis_motion.EVENTS
-            busy = self.axis_motion.busy
-            passed = self.control.advance(step, until=watch if busy else until)
-            done += passed
-            over = callable(until) and until()
-            is_over = over or self.control.has_enough or (passed < step and not busy) or not passed
-            if is_over or self.control.raised & events:
-                break
-        self.axis_motion.look()
-        self.history.sample(force=False)
         return done
 
     def status(self) -> Status:
@@ -418,16 +305,7 @@ class PowerMate:
 
     def snapshot(self) -> PowerMateSnapshot:
         """Return the state of the present cycle; of what is durable, the variables of a program under way are in it."""
-        control = self.control.snapshot()
-        return PowerMateSnapshot(
-            device=DEVICE,
-            made_from=control.made_from,
-            cycle=control.cycle,
-            blocks=(),
-            beside="",
-            control=control,
-            state=copied(self.state),
-        )
+        return PowerMateSnapshot.of(self.control.snapshot(), copied(self.state))
 
     def restore(self, snapshot: Snapshot) -> None:
         """Go back to a snapshot; what is durable stays as it is, but for the variables of a program under way.
@@ -436,14 +314,10 @@ class PowerMate:
             SnapshotError: It is of another control, axes have other limits now, or a program under way has been
                 edited since; nothing has changed.
         """
-        if not isinstance(snapshot, PowerMateSnapshot):
-            raise SnapshotError(
-                f"this is a snapshot of {snapshot.device}, not of a Power Mate",
-                hint="restore it where it was taken",
-            )
-        self.control.restore(snapshot.control)
-        restore_state(self.state, snapshot.state)
-        self.control.channels[0].set_skip_signal(self.state.skip)
+        taken = PowerMateSnapshot.checked(snapshot)
+        self.control.restore(taken.control)
+        restore_state(self.state, taken.state)
+        self.skip.restored()
         self.signals.restored()
 
     def close(self) -> None:
@@ -461,21 +335,10 @@ class PowerMate:
         self.panel.switched_on()
         self.history.switched_on()
 
-    def _common_range(self) -> CommonRange:
-        if self.has_option("macro_variables_600"):
-            return CommonRange.LARGE
-        return CommonRange.MIDDLE if self.has_option("macro_variables_300") else CommonRange.SMALL
-
     def _switch_on(self, before: Machine | None) -> None:
-        def note_skip() -> None:  # a function, not a method: a copy of the run shares it
-            self._note_skip()
-
         languages = (self.custom_macros.language,) if self.has_option(MACRO_OPTION) else ()
-        self.power.switch_on(before, languages, note_skip)
+        self.power.switch_on(before, languages, self.skip.noting())
         self.control.set_observer(self.history)
-
-    def _parameters_changed(self, rows: tuple[ParameterRow, ...]) -> None:
-        self.power.parameters_changed(rows)
 
 
 __all__ = ["PowerMate"]

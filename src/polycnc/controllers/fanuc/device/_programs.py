@@ -18,13 +18,7 @@ COMMENT_MOST = 48
 _NAME = re.compile(r"O([0-9]{4})")
 _COMMENT = re.compile(rb"O[0-9]+ *\(([^)\n]*)\)")
 _IN_OPERATION = frozenset(
-    {
-        RunState.ACTIVE,
-        RunState.HOLD,
-        RunState.STOPPED_AT_BLOCK,
-        RunState.PROGRAM_STOP,
-        RunState.OPTIONAL_STOP,
-    }
+    {RunState.ACTIVE, RunState.HOLD, RunState.STOPPED_AT_BLOCK, RunState.PROGRAM_STOP, RunState.OPTIONAL_STOP}
 )
 
 

@@ -31,6 +31,25 @@ class PowerMateSnapshot(Snapshot):
     control: ControlSnapshot
     state: DeviceState
 
+    @classmethod
+    def of(cls, control: ControlSnapshot, state: DeviceState) -> Self:
+        """Return the snapshot with that of its control, of the same cycle."""
+        return cls(DEVICE, control.made_from, control.cycle, (), "", control, state)
+
+    @classmethod
+    def checked(cls, snapshot: object, device: str = "") -> Self:
+        """Return a snapshot of a Power Mate; of another one `device` is the name.
+
+        Raises:
+            SnapshotError: It is none.
+        """
+        if not isinstance(snapshot, cls):
+            raise SnapshotError(
+                f"this is a snapshot of {device or getattr(snapshot, 'device', 'nothing')}, not of a Power Mate",
+                hint="restore it where it was taken",
+            )
+        return snapshot
+
     def to_bytes(self) -> bytes:
         """Return the snapshot as the contents of a file; what the memory file keeps is not in it.
 
@@ -49,12 +68,7 @@ class PowerMateSnapshot(Snapshot):
         """
         whole = Snapshot.from_bytes(content)
         found = _VALUES.value(whole.data().get("state")) if whole.device == DEVICE else None
-        if not isinstance(found, cls):
-            raise SnapshotError(
-                f"this is a snapshot of {whole.device}, not of a Power Mate",
-                hint="restore it where it was taken",
-            )
-        return found
+        return cls.checked(found, whole.device)
 
 
 _VALUES = Values(

@@ -82,7 +82,7 @@ def cnc_skip(
     """Read where the axes were when the skip signal came (Manual 000, cnc_skip)."""
     check_length(length, _HEADER + 4 * (link.device.axes if axis == ALL_AXES else 1))
     check_axis(axis, link.device.axes)
-    return EW.EW_OK, _filled(axis, link.read("cnc_skip", axis).skip_positions)
+    return EW.EW_OK, _filled(axis, link.read("cnc_skip", axis).skip.positions)
 
 
 @call
@@ -118,7 +118,7 @@ def cnc_rddynamic(
     device = link.read("cnc_rddynamic", axis)
     data = ODBDY() if device.max_axis > _MAX_AXIS_D else ODBDY_D()
     data.axis = axis
-    data.alarm = int(device.alarm_bits)
+    data.alarm = int(device.power.alarm_bits)
     data.prgnum, data.prgmnum = device.execution.numbers
     data.seqnum = device.execution.sequence
     data.actf = device.positions.feed()
@@ -138,9 +138,7 @@ def cnc_rddynamic(
 
 @call
 def cnc_wrrelpos(
-    link: Link,
-    length: Annotated[SHORT, LengthOf("wrrelpos")],
-    wrrelpos: Annotated[IDBWRR, IN],
+    link: Link, length: Annotated[SHORT, LengthOf("wrrelpos")], wrrelpos: Annotated[IDBWRR, IN]
 ) -> EW:
     """Preset relative positions: of the axis `type`, or of all (Manual 000, cnc_wrrelpos)."""
     axes, axis = link.device.axes, wrrelpos.type

@@ -9,13 +9,7 @@ from polycnc.controllers.fanuc.device._pmc_memory import exists
 from polycnc.controllers.fanuc.library._call import call
 from polycnc.controllers.fanuc.library._codes import EW
 from polycnc.controllers.fanuc.library._network import Link
-from polycnc.controllers.fanuc.library._structs import (
-    HISTORY_SIGNALS,
-    IODBSIG,
-    ODBAHIS,
-    ODBHIS,
-    ODBHIS_DATA,
-)
+from polycnc.controllers.fanuc.library._structs import HISTORY_SIGNALS, IODBSIG, ODBAHIS, ODBHIS, ODBHIS_DATA
 from polycnc.controllers.library import IN, SHORT, USHORT, LengthOf, Out, Refused, variant
 
 _HEADER = 6

@@ -39,7 +39,7 @@ def _block(link: Link, first: int, last: int) -> range:
 
 def _pair(link: Link, device: PowerMate, number: int) -> tuple[int, int]:
     if number <= LOCALS:
-        value, kept = device.local_variable(number), None
+        value, kept = device.custom_macros.local(number), None
     else:
         value, kept = device.macros.get(number), device.macros.pair(number)
     if link.macro_type != DECIMAL:

@@ -113,7 +113,7 @@ def cnc_statinfo(link: Link) -> tuple[EW, Annotated[ODBST, Out("statinfo")]]:
 @call
 def cnc_alarm(link: Link) -> tuple[EW, Annotated[ODBALM, Out("alarm")]]:
     """Read the groups of the alarms that are on, as bits (Manual 000, cnc_alarm)."""
-    return EW.EW_OK, ODBALM(data=int(link.read("cnc_alarm").alarm_bits))
+    return EW.EW_OK, ODBALM(data=int(link.read("cnc_alarm").power.alarm_bits))
 
 
 @call
@@ -173,18 +173,13 @@ def cnc_getfigure(
     none = [0] * device.max_axis
     if data_type == _AXIS_DATA:
         axes = range(1, device.axes + 1)
-        read = [device.input_scale(axis).decimals for axis in axes]
-        shown_ = [device.output_scale(axis).decimals for axis in axes]
-        return (
-            EW.EW_OK,
-            _FIGURES[data_type],
-            read + none[device.axes :],
-            shown_ + none[device.axes :],
-        )
-    increment = device.increment
+        read = [device.units.input_scale(axis).decimals for axis in axes]
+        shown_ = [device.units.output_scale(axis).decimals for axis in axes]
+        return (EW.EW_OK, _FIGURES[data_type], read + none[device.axes :], shown_ + none[device.axes :])
+    increment = device.units.increment
     if data_type == _MACRO and increment is Increment.IS_A:
         increment = Increment.IS_B
-    decimals = increment.decimals + int(device.inch_input)
+    decimals = increment.decimals + int(device.units.inch_input)
     return EW.EW_OK, _FIGURES[data_type], [decimals, *none[1:]], [decimals, *none[1:]]
 
 

@@ -37,7 +37,7 @@ def cnc_modal(link: Link, type: SHORT, block: SHORT) -> tuple[EW, Annotated[ODBM
         made.modal.raux1[k] = _aux(device, data, name)
     for k, axis in enumerate(axes):
         if axis <= device.axes:
-            made.modal.raux2[k] = _aux(device, data, device.axis_name(axis))
+            made.modal.raux2[k] = _aux(device, data, device.units.axis_name(axis))
     return EW.EW_OK, made
 
 

@@ -37,10 +37,7 @@ def _write(link: Link, values: dict[int, int]) -> EW:
 
 @call
 def cnc_rdtofs(
-    link: Link,
-    number: SHORT,
-    type: SHORT,
-    length: Annotated[SHORT, LengthOf("tofs")],
+    link: Link, number: SHORT, type: SHORT, length: Annotated[SHORT, LengthOf("tofs")]
 ) -> tuple[EW, Annotated[ODBTOFS, Out("tofs")]]:
     """Read a tool offset, in increments (Manual 000, cnc_rdtofs)."""
     check_length(length, _SINGLE)
@@ -51,13 +48,7 @@ def cnc_rdtofs(
 
 
 @call
-def cnc_wrtofs(
-    link: Link,
-    number: SHORT,
-    type: SHORT,
-    length: SHORT,
-    data: LONG,
-) -> EW:
+def cnc_wrtofs(link: Link, number: SHORT, type: SHORT, length: SHORT, data: LONG) -> EW:
     """Write a tool offset, in increments (Manual 000, cnc_wrtofs). Ruling: out of range it is EW_DATA."""
     check_length(length, _SINGLE)
     _check_numbers(link, number)
@@ -67,11 +58,7 @@ def cnc_wrtofs(
 
 @call
 def cnc_rdtofsr(
-    link: Link,
-    s_number: SHORT,
-    type: SHORT,
-    e_number: SHORT,
-    length: Annotated[SHORT, LengthOf("tofsr")],
+    link: Link, s_number: SHORT, type: SHORT, e_number: SHORT, length: Annotated[SHORT, LengthOf("tofsr")]
 ) -> tuple[EW, Annotated[IODBTO, Out("tofsr")]]:
     """Read a range of tool offsets (Manual 000, cnc_rdtofsr)."""
     check_length(length, _HEADER + 4 * max(1, e_number - s_number + 1))

@@ -13,17 +13,7 @@ from polycnc.controllers.fanuc.library._call import call, check_length
 from polycnc.controllers.fanuc.library._codes import ALL_AXES, EW
 from polycnc.controllers.fanuc.library._network import Link
 from polycnc.controllers.fanuc.library._structs import IODBPSD, ODBPARAIF
-from polycnc.controllers.library import (
-    IN,
-    INOUT,
-    SHORT,
-    USHORT,
-    Bytes,
-    LengthOf,
-    Out,
-    Refused,
-    variant,
-)
+from polycnc.controllers.library import IN, INOUT, SHORT, USHORT, Bytes, LengthOf, Out, Refused, variant
 
 _HEADER = 4
 _ALL_IN_RECORD = 0xFF
@@ -278,9 +268,7 @@ def cnc_rdsetr(
 
 @call
 def cnc_wrsets(
-    link: Link,
-    length: Annotated[SHORT, LengthOf("set")],
-    set: Annotated[bytes, Bytes("void *")],
+    link: Link, length: Annotated[SHORT, LengthOf("set")], set: Annotated[bytes, Bytes("void *")]
 ) -> EW:
     """Write settings from records of ascending numbers, all or none (Manual 000, cnc_wrsets)."""
     return _write_records(link, length, set, _is_setting, settings=True)

@@ -55,9 +55,7 @@ def pmc_rdpmcrng(
 
 @call
 def pmc_wrpmcrng(
-    link: Link,
-    length: Annotated[SHORT, LengthOf("buf")],
-    buf: Annotated[bytes, Bytes("IODBPMC *")],
+    link: Link, length: Annotated[SHORT, LengthOf("buf")], buf: Annotated[bytes, Bytes("IODBPMC *")]
 ) -> EW:
     """Write PMC addresses; F, X, R9000 on and K17 on are protected (Manual 000, pmc_wrpmcrng).
 

@@ -13,17 +13,7 @@ from polycnc.controllers.fanuc.library._call import call
 from polycnc.controllers.fanuc.library._codes import EW
 from polycnc.controllers.fanuc.library._network import Link
 from polycnc.controllers.fanuc.library._structs import ODBMDIP, ODBNC, ODBPRO, ODBSEQ, ODBUP, PRGDIR
-from polycnc.controllers.library import (
-    INOUT,
-    LONG,
-    SHORT,
-    USHORT,
-    Bytes,
-    LengthOf,
-    Out,
-    Refused,
-    variant,
-)
+from polycnc.controllers.library import INOUT, LONG, SHORT, USHORT, Bytes, LengthOf, Out, Refused, variant
 
 CHARS: TypeAlias = Annotated[Any, Bytes("char *")]
 """Characters, which a program may pass as text or as bytes; a function gets bytes."""
@@ -32,11 +22,7 @@ PIECE_MOST = 256
 MDI_MOST = 199
 _INFO_LENGTHS = {0: (12,), 1: (31, 32)}
 
-_FAULTS = {
-    Fault.PROTECTED: EW.EW_PROT,
-    Fault.FULL: EW.EW_OVRFLOW,
-    Fault.RESET: EW.EW_RESET,
-}
+_FAULTS = {Fault.PROTECTED: EW.EW_PROT, Fault.FULL: EW.EW_OVRFLOW, Fault.RESET: EW.EW_RESET}
 _MEM_OR_EDIT = (PowerMateMode.MEM, PowerMateMode.EDIT)
 
 
@@ -59,7 +45,7 @@ def cnc_dwnstart(link: Link) -> EW:
     busy = (
         device.transfer is not None
         or device.programs.background_edit
-        or device.transfers_blocked
+        or device.power.blocks_transfers
         or device.mode is PowerMateMode.MDI
     )
     _refuse_if(busy, EW.EW_BUSY)
@@ -113,7 +99,7 @@ def cnc_dwnend(link: Link) -> EW:
 def cnc_upstart(link: Link, number: SHORT) -> EW:
     """Begin to read a program (Manual 000, cnc_upstart)."""
     device = link.command()
-    _refuse_if(link.upload is not None or device.transfers_blocked, EW.EW_BUSY)
+    _refuse_if(link.upload is not None or device.power.blocks_transfers, EW.EW_BUSY)
     _refuse_if(number not in device.programs, EW.EW_DATA)
     link.upload = Upload(device.programs.read(number), device.power_ups)
     return EW.EW_OK
@@ -154,7 +140,7 @@ def cnc_search(link: Link, number: SHORT) -> EW:
     """Select a program in MEM and EDIT; in other modes only tell whether it is there (Manual 000, cnc_search)."""
     device = link.command()
     download = device.transfer is not None and not device.transfer.compare
-    _refuse_if(_in_operation(device) or download or device.transfers_blocked, EW.EW_BUSY)
+    _refuse_if(_in_operation(device) or download or device.power.blocks_transfers, EW.EW_BUSY)
     _refuse_if(number not in device.programs, EW.EW_DATA)
     if device.mode in _MEM_OR_EDIT:
         try:
@@ -168,7 +154,7 @@ def _check_deletable(device: PowerMate) -> None:
     busy = (
         device.programs.background_edit
         or device.transfer is not None
-        or device.transfers_blocked
+        or device.power.blocks_transfers
         or device.mode is PowerMateMode.MDI
         or _in_operation(device)
     )
@@ -197,7 +183,7 @@ def cnc_delete(link: Link, number: SHORT) -> EW:
     """Delete a program (Manual 000, cnc_delete)."""
     device = link.command()
     _check_deletable(device)
-    _refuse_if(number == device.selected != 0, EW.EW_BUSY)
+    _refuse_if(number == device.programs.selected != 0, EW.EW_BUSY)
     _refuse_if(number not in device.programs, EW.EW_DATA)
     _refuse_if(device.programs.key_protects or device.programs.parameter_protects(number), EW.EW_PROT)
     try:
@@ -209,11 +195,7 @@ def cnc_delete(link: Link, number: SHORT) -> EW:
 
 @call
 def cnc_rdprogdir(
-    link: Link,
-    type: SHORT,
-    datano_s: SHORT,
-    datano_e: SHORT,
-    length: Annotated[SHORT, LengthOf("prgdir")],
+    link: Link, type: SHORT, datano_s: SHORT, datano_e: SHORT, length: Annotated[SHORT, LengthOf("prgdir")]
 ) -> tuple[EW, Annotated[PRGDIR, Out("prgdir")]]:
     """List programs: numbers (0), with comments (1), with characters as well (2) (Manual 000, cnc_rdprogdir).
 
@@ -235,9 +217,7 @@ def cnc_rdprogdir(
 
 @call
 def cnc_rdproginfo(
-    link: Link,
-    type: SHORT,
-    length: Annotated[SHORT, LengthOf("prginfo")],
+    link: Link, type: SHORT, length: Annotated[SHORT, LengthOf("prginfo")]
 ) -> tuple[EW, Annotated[ODBNC, Out("prginfo")]]:
     """Tell how full the program memory is, in numbers (0) or as text (1) (Manual 000, cnc_rdproginfo)."""
     lengths = _INFO_LENGTHS.get(type, (*_INFO_LENGTHS[0], *_INFO_LENGTHS[1]))

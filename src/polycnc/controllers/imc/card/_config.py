@@ -111,8 +111,7 @@ class CardConfig(StrictModel):
         default=4, description="Number of axes; those without a table have all defaults."
     )
     ready: bool = Field(
-        default=False,
-        description="true: every axis is enabled and in run from power-on, with usable speeds.",
+        default=False, description="true: every axis is enabled and in run from power-on, with usable speeds."
     )
     overflow: Literal["origin", "wrap"] = Field(
         default="origin",

@@ -8,14 +8,7 @@ from polycnc.controllers.imc.core._commands import take_commands
 from polycnc.controllers.imc.core._errors import halt_axis
 from polycnc.controllers.imc.core._follow import follow_step
 from polycnc.controllers.imc.core._planner import advance_system, moved, show_slope, system_step
-from polycnc.controllers.imc.core._state import (
-    AXIS_ERROR,
-    GEAR,
-    IDLE,
-    SMOOTH_ROWS,
-    SYNC,
-    CardState,
-)
+from polycnc.controllers.imc.core._state import AXIS_ERROR, GEAR, IDLE, SMOOTH_ROWS, SYNC, CardState
 from polycnc.controllers.imc.core._words import (
     ONE,
     clip32,

@@ -25,15 +25,7 @@ from polycnc.controllers.imc.core._ownership import (
     take_over,
 )
 from polycnc.controllers.imc.core._planner import begin_move, can_move, refuse_move, start_velocity
-from polycnc.controllers.imc.core._state import (
-    GEAR,
-    IDLE,
-    MOVE,
-    RELEASED,
-    SPACES,
-    SYNC,
-    CardState,
-)
+from polycnc.controllers.imc.core._state import GEAR, IDLE, MOVE, RELEASED, SPACES, SYNC, CardState
 from polycnc.controllers.imc.core._words import FLAG, get32, get_u16, put16, put32, wrap32
 from polycnc.kernel import compiled
 

@@ -19,15 +19,7 @@ from polycnc.controllers.imc.core._bits import (
 from polycnc.controllers.imc.core._ownership import drop_couplings
 from polycnc.controllers.imc.core._path import stop_space
 from polycnc.controllers.imc.core._planner import rest_system, start_velocity
-from polycnc.controllers.imc.core._state import (
-    AXIS_ERROR,
-    GIVEN,
-    IDLE,
-    RELEASED,
-    SPACES,
-    VELOCITY,
-    CardState,
-)
+from polycnc.controllers.imc.core._state import AXIS_ERROR, GIVEN, IDLE, RELEASED, SPACES, VELOCITY, CardState
 from polycnc.controllers.imc.core._words import get16, get32, get48, get_u16, put16, put48, wrap48
 from polycnc.kernel import compiled
 

@@ -8,14 +8,7 @@ from polycnc.controllers.imc.core import _addresses as addr
 from polycnc.controllers.imc.core._instructions import HEADER, POINTS
 from polycnc.controllers.imc.core._planner import REST_SLACK, to_units
 from polycnc.controllers.imc.core._state import GIVEN, IDLE, PFIFO1, CardState
-from polycnc.controllers.imc.core._words import (
-    FLAG,
-    clip32,
-    get32,
-    get_u16,
-    put16,
-    put32,
-)
+from polycnc.controllers.imc.core._words import FLAG, clip32, get32, get_u16, put16, put32
 from polycnc.kernel import (
     SHORT_JUMP,
     compiled,

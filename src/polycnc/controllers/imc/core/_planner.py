@@ -11,14 +11,7 @@ import math
 
 from polycnc.controllers.imc.core import _addresses as addr
 from polycnc.controllers.imc.core._bits import INSERR
-from polycnc.controllers.imc.core._state import (
-    GIVEN,
-    IDLE,
-    MOVE,
-    RELEASED,
-    VELOCITY,
-    CardState,
-)
+from polycnc.controllers.imc.core._state import GIVEN, IDLE, MOVE, RELEASED, VELOCITY, CardState
 from polycnc.controllers.imc.core._words import (
     FLAG,
     ONE,
@@ -31,13 +24,7 @@ from polycnc.controllers.imc.core._words import (
     put48,
     wrap48,
 )
-from polycnc.kernel import (
-    SHORT_OVERSHOOT,
-    compiled,
-    plan_profile,
-    profile_at,
-    profile_duration,
-)
+from polycnc.kernel import SHORT_OVERSHOOT, compiled, plan_profile, profile_at, profile_duration
 
 REST_SLACK = 1e-9  # of a cycle by which rounding may make a rest late
 _TOP = 1 << 47  # where a position of 48 bits ends

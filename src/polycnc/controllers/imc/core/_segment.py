@@ -10,28 +10,9 @@ from polycnc.controllers.imc.core._instructions import ARC, HEADER, POINTS
 from polycnc.controllers.imc.core._ownership import take_over
 from polycnc.controllers.imc.core._planner import to_units
 from polycnc.controllers.imc.core._queue import cell, drop_head, drop_point
-from polycnc.controllers.imc.core._state import (
-    COORDINATES,
-    GIVEN,
-    IDLE,
-    PFIFO1,
-    RELEASED,
-    SPACES,
-    CardState,
-)
-from polycnc.controllers.imc.core._words import (
-    FLAG,
-    get48,
-    get_u16,
-    get_u32,
-    put16,
-    put32,
-)
-from polycnc.kernel import (
-    compiled,
-    set_arc,
-    set_line,
-)
+from polycnc.controllers.imc.core._state import COORDINATES, GIVEN, IDLE, PFIFO1, RELEASED, SPACES, CardState
+from polycnc.controllers.imc.core._words import FLAG, get48, get_u16, get_u32, put16, put32
+from polycnc.kernel import compiled, set_arc, set_line
 
 _SPEED_COUNTS_ON = 3  # X, Y and Z
 
@@ -129,7 +110,7 @@ def _set_arc(s: CardState, g: int) -> bool:
 
 @compiled
 def _set_segment(s: CardState, g: int) -> bool:
-    """Take the segment at the head of the queue into work; False if there is nothing to go along."""
+    """Take the segment at the head of the queue into work; False if there is nothing to follow."""
     m, n, o, f = s.memory, s.axis.shape[0], g * addr.SPACE, PFIFO1 + g
     count = cell(s, f, HEADER + 2)
     if cell(s, f, HEADER + 1) != 0:

@@ -4,13 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from polycnc.controllers.imc.core._instructions import (
-    InstallEvents,
-    Instruction,
-    Points,
-    WriteMany,
-    words_of,
-)
+from polycnc.controllers.imc.core._instructions import InstallEvents, Instruction, Points, WriteMany, words_of
 from polycnc.controllers.imc.core._parameters import PARAMETERS
 from polycnc.controllers.imc.library._codes import (
     IMC_FIFO_FULL,

@@ -79,10 +79,7 @@ def _home(returns: int = 0, *, switch: bool = True, index: bool = False) -> Expa
 
     scheme = " + ".join(name for name, wanted in (("switch", switch), ("index", index)) if wanted)
     how = "direction, RiseEdge, stop" if switch else "direction, stop"
-    return (
-        Put("homeseq", From(f"{scheme}, {returns} returns, by {how}", sequence)),
-        Put("gohome", FLAG),
-    )
+    return (Put("homeseq", From(f"{scheme}, {returns} returns, by {how}", sequence)), Put("gohome", FLAG))
 
 
 def _gear(master: str, source: From) -> Expansion:

@@ -209,11 +209,7 @@ def _arc(
 
 
 def _made(
-    ends: tuple[int, ...],
-    center: tuple[int, int] | None,
-    speeds: tuple[int, int] | None,
-    *,
-    clockwise: bool,
+    ends: tuple[int, ...], center: tuple[int, int] | None, speeds: tuple[int, int] | None, *, clockwise: bool
 ) -> Segment:
     coordinates = tuple(signed_32(end) for end in ends)
     if center is not None:

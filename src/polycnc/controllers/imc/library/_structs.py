@@ -12,9 +12,7 @@ from typing import Self
 from polycnc.controllers.imc.core._event_codes import EventCommand, constant_words
 from polycnc.controllers.imc.core._event_codes import EventType as Trigger
 from polycnc.controllers.imc.library import _declared
-from polycnc.controllers.imc.library._declared import (
-    HEADER,
-)
+from polycnc.controllers.imc.library._declared import HEADER
 
 
 class NIC_INFO(_declared.NIC_INFO):

@@ -6,7 +6,6 @@ A parameter of a function is annotated with one of these; what they check is che
 from __future__ import annotations
 
 import ctypes
-import math
 from dataclasses import dataclass
 from typing import Annotated, Any, TypeAlias
 
@@ -86,8 +85,13 @@ class Fixed:
 
     def take(self, value: Any, to: IMC_HANDLE) -> float:
         """Refuse what the fixed-point number cannot hold."""
-        number, limit = float(value), 1 << (self.bits - 1 + self.fraction)
-        if not math.isfinite(number) or not -limit <= round(number * (1 << self.fraction)) < limit:
+        try:
+            number = float(value)
+        except OverflowError:
+            raise Refused(IMC_OUT_OF_RANGE) from None
+        most = 1 << (self.bits - 1)
+        scaled = round(number * (1 << self.fraction)) if abs(number) <= most else None
+        if scaled is None or not -most <= scaled / (1 << self.fraction) < most:
             raise Refused(IMC_OUT_OF_RANGE)
         return number
 

@@ -1,43 +1,42 @@
-"""A process that serves one FANUC control by FOCAS, HTTP and grbl, and a client of each door; it has three axes."""
+"""A process that serves one FANUC control by all doors, and a client of each door; it has three axes."""
 
 from __future__ import annotations
 
 import json
 import re
 import socket
-import subprocess
 from contextlib import ExitStack
 from typing import Any
 
 import httpx
 from websockets.sync.client import connect
 
-from support.command import COMMAND, environment
 from support.focas_line import Line, values
+from support.plant_doors import Agent, Opcua, Shdr
+from support.started import started
 
+_DOORS = "focas=0,http=0,grbl=0,mtconnect=0,shdr=0,opcua=0"
 AUT = {0: "mdi", 1: "auto", 3: "edit", 4: "handle", 5: "jog", 8: "inc", 9: "ref"}
 RUN = {0: "reset", 1: "stop", 2: "hold", 3: "start"}
 
 
-class FourDoors:
+class AllDoors:
     """The process, and what each of its doors says of the machine."""
 
     def __init__(self, *more: str) -> None:
-        self.process = subprocess.Popen(
-            [*COMMAND, "serve", "--fanuc", "--doors", "focas=0,http=0,grbl=0", *more],
-            stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, env=environment(PYTHONUNBUFFERED="1"),
-        )  # fmt: skip
+        self.process = started("serve", "--fanuc", "--doors", _DOORS, *more)
         assert self.process.stdout is not None
         said = {
             name: at.strip()
-            for name, _, at in (self.process.stdout.readline().partition(" ") for _ in range(3))
+            for name, _, at in (self.process.stdout.readline().partition(" ") for _ in range(6))
         }
         self.said = said
+        port = {name: int(at.partition(";")[0].rpartition(":")[2]) for name, at in said.items()}
         self.http = httpx.Client(base_url=f"{said['http:']}/api/machines/machine", timeout=60)
-        self.line = Line(int(said["focas:"].partition(";")[0].rpartition(":")[2]))
-        self.sender = socket.create_connection(
-            ("127.0.0.1", int(said["grbl:"].rpartition(":")[2])), timeout=60
-        )
+        self.line = Line(port["focas:"])
+        self.sender = socket.create_connection(("127.0.0.1", port["grbl:"]), timeout=60)
+        self.agent, self.shdr = Agent(port["mtconnect:"]), Shdr(port["shdr:"])
+        self.opcua = Opcua(said["opcua:"])
         self._reader = self.sender.makefile("rb")
         self._open = ExitStack()
         self.stream = self._open.enter_context(
@@ -50,6 +49,9 @@ class FourDoors:
     def end(self) -> str:
         """End it; return what it said on standard error."""
         self._open.close()
+        self.opcua.close()
+        self.agent.close()
+        self.shdr.line.close()
         self.sender.close()
         self._reader.close()
         self.line.close()

@@ -1,0 +1,105 @@
+"""One connection of HTTP: bounded in number, in how long a question takes to come, and an answer to be read."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Callable
+from typing import NamedTuple, TypeAlias
+
+import h11
+from starlette.types import Receive, Scope, Send
+from uvicorn.protocols.http.h11_impl import H11Protocol
+
+from polycnc.servers.machines import notice_loss
+
+MOST_CONNECTIONS = 500
+MOST_WAIT_S = 60.0
+"""How long a question may take to come, a connection may stand without one, and an answer without being read."""
+_LOOK_S = 5.0
+
+
+class Refused(NamedTuple):
+    """A refusal in the form of a door."""
+
+    status: int
+    headers: list[tuple[bytes, bytes]]
+    body: bytes
+
+
+Refuse: TypeAlias = Callable[[int, str, str], Refused]
+"""Return the refusal for an HTTP status, what is wrong, and what to do."""
+
+
+def refused_in_text(status: int, what: str, hint: str) -> Refused:
+    """Return the refusal of a door that has no form of its own: a line of text."""
+    return Refused(status, [(b"content-type", b"text/plain; charset=utf-8")], f"{what}. {hint}\n".encode())
+
+
+class Connection(H11Protocol):
+    """A connection that does not wait for ever for what a client does not send, or does not read."""
+
+    refuse: Refuse
+
+    def connection_made(self, transport: asyncio.Transport) -> None:  # type: ignore[override]
+        """Begin; beyond so many connections only a refusal is answered."""
+        super().connection_made(transport)
+        notice_loss(transport)
+        self._since_s = self.loop.time()
+        self._unread = 0
+        if len(self.connections) > MOST_CONNECTIONS:
+            self.app = self._crowded
+        self._looking = self.loop.call_later(_LOOK_S, self._look)
+
+    def connection_lost(self, exc: Exception | None) -> None:
+        """Forget it."""
+        self._looking.cancel()
+        super().connection_lost(exc)
+
+    def send_400_response(self, msg: str) -> None:
+        """Refuse what is no HTTP."""
+        said = self.refuse(400, "this is no request of HTTP", "Ask by HTTP/1.1.")
+        headers = [*said.headers, (b"connection", b"close")]
+        try:
+            self.transport.write(
+                self.conn.send(h11.Response(status_code=said.status, headers=headers)) or b""
+            )
+            self.transport.write(self.conn.send(h11.Data(data=said.body)) or b"")
+            self.transport.write(self.conn.send(h11.EndOfMessage()) or b"")
+        except h11.LocalProtocolError:  # an answer has begun: nothing can be said any more
+            pass
+        self.transport.close()
+
+    def _look(self) -> None:
+        now_s = self.loop.time()
+        if self.transport.is_closing() or self.transport.get_protocol() is not self:
+            return  # it is over, or a stream
+        if self._is_answered():
+            self._since_s = now_s
+        elif now_s - self._since_s >= MOST_WAIT_S:
+            self.transport.abort()
+            return
+        self._looking = self.loop.call_later(_LOOK_S, self._look)
+
+    def _is_answered(self) -> bool:
+        """Tell whether a question is being answered, and the client reads what there is of the answer."""
+        before, self._unread = self._unread, self.transport.get_write_buffer_size()
+        if self._unread and self._unread == before:
+            return False
+        cycle = self.cycle
+        return cycle is not None and not cycle.response_complete and not cycle.more_body
+
+    def on_response_complete(self) -> None:
+        """Wait for the next question."""
+        self._since_s = self.loop.time()
+        super().on_response_complete()
+
+    async def _crowded(self, scope: Scope, receive: Receive, send: Send) -> None:
+        said = self.refuse(503, "too many connections", "Close some, or ask later.")
+        headers = [*said.headers, (b"connection", b"close")]
+        await send({"type": "http.response.start", "status": said.status, "headers": headers})
+        await send({"type": "http.response.body", "body": said.body})
+
+
+def refusing(refuse: Refuse) -> type[Connection]:
+    """Return the connections of a door that refuses in its own form."""
+    return type("Connection", (Connection,), {"refuse": staticmethod(refuse)})

@@ -1,0 +1,88 @@
+"""Start `polycnc serve` as a process of its own that goes on: forked where that is possible, see `command_server`."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import signal
+import subprocess
+import tempfile
+import threading
+from pathlib import Path
+from typing import IO, Any, cast
+
+from support.command import COMMAND, environment, request_of
+
+
+class Started:
+    """What tests use of `subprocess.Popen`, for a process that another one has forked."""
+
+    def __init__(self, words: list[str], cwd: Path | None) -> None:
+        self._folder = tempfile.TemporaryDirectory()
+        names = [os.path.join(self._folder.name, name) for name in ("stdout", "stderr", "status")]
+        for name in names:
+            os.mkfifo(name)
+        self.returncode: int | None = None
+        self.args = [*COMMAND, *words]
+        place = {"folder": str(cwd or Path.cwd()), "outputs": names[:2], "status": names[2]}
+        request_of({"arguments": words, **place})
+        self._status: IO[str] = open(names[2], encoding="utf-8")  # noqa: SIM115
+        self.pid = int(self._status.readline())
+        self.stdout: IO[str] = open(names[0], encoding="utf-8")  # noqa: SIM115
+        self.stderr: IO[str] = open(names[1], encoding="utf-8")  # noqa: SIM115
+
+    def send_signal(self, number: int) -> None:
+        """Send a signal, if it has not ended."""
+        with contextlib.suppress(ProcessLookupError):
+            os.kill(self.pid, number)
+
+    def terminate(self) -> None:
+        """Ask it to end."""
+        self.send_signal(signal.SIGTERM)
+
+    def kill(self) -> None:
+        """End it."""
+        self.send_signal(signal.SIGKILL)
+
+    def communicate(self, timeout: float | None = None) -> tuple[str, str]:
+        """Wait until it has ended; return what it printed since it was last read.
+
+        Raises:
+            subprocess.TimeoutExpired: It has not ended within the time.
+        """
+        said = ["", "", ""]
+
+        def read(number: int, of: IO[str]) -> None:
+            said[number] = of.read()
+
+        outputs = (self.stdout, self.stderr, self._status)
+        threads = [threading.Thread(target=read, args=each, daemon=True) for each in enumerate(outputs)]
+        for each in threads:
+            each.start()
+        for each in reversed(threads):
+            each.join(timeout)
+            if each.is_alive():
+                raise subprocess.TimeoutExpired(self.args, timeout or 0.0)
+        for output in outputs:
+            output.close()
+        self.returncode = int(said[2])
+        self._folder.cleanup()
+        return said[0], said[1]
+
+    def wait(self, timeout: float | None = None) -> int:
+        """Wait until it has ended; return its exit status."""
+        self.communicate(timeout)
+        assert self.returncode is not None
+        return self.returncode
+
+
+def started(*arguments: str | Path, cwd: Path | None = None) -> Started:
+    """Start a command whose outputs are read line by line."""
+    words = [str(each) for each in arguments]
+    if hasattr(os, "fork"):
+        return Started(words, cwd)
+    process: Any = subprocess.Popen(
+        [*COMMAND, *words], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, cwd=cwd,
+        env=environment(PYTHONUNBUFFERED="1"),
+    )  # fmt: skip
+    return cast(Started, process)
