@@ -34,6 +34,7 @@ SCRIPTS = {
     "bench_cycle_calls.py": "One cycle per call",
     "bench_post.py": "Post-processor macros",
     "bench_focas.py": "FOCAS server",
+    "bench_calls.py": "C library",
     "bench_plants.py": "MTConnect agent",
     "bench_fleet.py": "Fleets",
     "bench_batch.py": "Batches",

@@ -46,6 +46,14 @@ outputs. No frame has more than 65,536 bytes. A frame that is none of these ends
 `polycnc calls KIND --trace FILE` writes a line of JSON for each call: `time_s` of the machine, `call`, what went `in`, the
 `code`, what came `out`. Numbers and texts are as they are, structures hexadecimal bytes.
 
+## What a program needs
+
+`polycnc clib KIND --missing PROGRAM` reads the import tables of an .exe or a DLL (32 and 64 bits, delayed imports too), or
+the undefined symbols of a Linux program, and lists which functions of the maker's library ours does not have. It sees
+nothing of what a program loads by name while it runs; the trace does. A Linux program does not say from which library it
+takes a name: names that begin as all of the library do are meant, and `mcug3`, whose names begin with nothing in common, is
+refused.
+
 ## What there is not
 
 No library in the process (the interpreter is never loaded into the program), no 4-byte packing of later headers, no routine

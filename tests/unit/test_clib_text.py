@@ -86,14 +86,20 @@ def test_the_command_writes_the_source_alone(tmp_path: Path) -> None:
 @pytest.mark.parametrize("name", ["fwlib32.h", "fwlib32.dll", "fwlib32.lib", "fwlib32.c"])
 def test_files_of_the_maker_are_not_replaced(name: str, tmp_path: Path) -> None:
     (tmp_path / name).write_bytes(b"the maker's own")
-    for words in ((), ("--source-only",)):
-        assert "not of polycnc clib" in polycnc("clib", "fanuc", *words, cwd=tmp_path, status=2).stderr
+    with pytest.raises(UsageError, match="not of polycnc clib"):
+        write_library(library_of("fanuc"), tmp_path)
     assert [(each.name, each.read_bytes()) for each in tmp_path.iterdir()] == [(name, b"the maker's own")]
+
+
+def test_the_command_replaces_no_file_of_the_maker(tmp_path: Path) -> None:
+    (tmp_path / "fwlib32.dll").write_bytes(b"the maker's own")
+    assert "not of polycnc clib" in polycnc("clib", "fanuc", cwd=tmp_path, status=2).stderr
+    assert [each.name for each in tmp_path.iterdir()] == ["fwlib32.dll"]
 
 
 def test_what_it_wrote_is_written_anew(tmp_path: Path) -> None:
     for _ in range(2):
-        polycnc("clib", "fanuc", "--source-only", cwd=tmp_path)
+        write_library(library_of("fanuc"), tmp_path)
     assert sorted(each.name for each in tmp_path.iterdir()) == sorted(FILES)
 
 

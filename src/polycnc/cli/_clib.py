@@ -2,12 +2,17 @@
 
 from __future__ import annotations
 
+import sys
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from polycnc.cli._errors import PROGRAM
 from polycnc.cli._output import say
+
+if TYPE_CHECKING:
+    from polycnc.controllers.library.clib import CLibrary
 
 
 def clib_command(
@@ -19,14 +24,40 @@ def clib_command(
         str | None, typer.Option(help="linux, win32, win64 or macos; absent: this computer.", metavar="NAME")
     ] = None,
     source_only: Annotated[bool, typer.Option(help="Write header and source, and build nothing.")] = False,
+    missing: Annotated[
+        Path | None,
+        typer.Option(
+            help="Write nothing: say what this program needs and the library has not.", metavar="PROGRAM"
+        ),
+    ] = None,
 ) -> None:
     """Write header and source of a C library, and build it with gcc, clang or mingw-w64."""
     from polycnc.servers.calls import build_command, build_library, library_of, target_here, write_library
 
     library = library_of(kind)
+    if missing is not None:
+        _say_missing(missing, library)
+        return
     wanted = target or target_here()
     build_command(library, wanted)  # refuses a target that there is not
     for path in write_library(library, folder):
         say(str(path))
     if not source_only:
         say(str(build_library(library, folder, wanted)))
+
+
+def _say_missing(program: Path, library: CLibrary) -> None:
+    """Say which functions of a library a program takes that we do not have; status 1 if there are any."""
+    from polycnc.servers.calls import missing_of
+
+    taken, absent = missing_of(program, library)
+    say(
+        f"{program.name} takes {len(taken)} functions from {library.name}, of which {len(absent)} are missing"
+    )
+    for name in absent:
+        say(name)
+    idle = [name for name in taken if name in library.left_out]
+    for name in idle:
+        say(f"{name} has no effect: {library.left_out[name]}")
+    if absent:
+        sys.exit(PROGRAM)

@@ -4,6 +4,7 @@ from polycnc.controllers.library.clib import PORT
 from polycnc.servers.calls._build import TARGETS, build_command, build_library, target_here, write_library
 from polycnc.servers.calls._caller import Caller
 from polycnc.servers.calls._client import MAGIC, CallClient, Hello, Trace
+from polycnc.servers.calls._imports import missing_of
 from polycnc.servers.calls._libraries import LIBRARIES, Served, library_of
 from polycnc.servers.calls._server import CallsServer
 
@@ -21,6 +22,7 @@ __all__ = [
     "build_command",
     "build_library",
     "library_of",
+    "missing_of",
     "target_here",
     "write_library",
 ]

@@ -2,43 +2,51 @@
 
 from __future__ import annotations
 
-import struct
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
-from typing import Any
+from operator import attrgetter
+from typing import Any, NamedTuple
 
 from polycnc.controllers.library import Opaque, Session
 from polycnc.controllers.library.clib import Call, CLibrary, Slot, Way
 from polycnc.errors import UsageError
+from polycnc.servers.calls._frames import CallError, Done, Given, Layout
 
-_NULL = 0xFFFFFFFF
-_SIZE = struct.Struct("<I")
-_ANSWER = struct.Struct("<HHI")
 _MOST_HANDLES = 65536  # that a client has ever had
-_CARRIED_OUT, _REFUSED = 0, 1
+_CONTENT = attrgetter("content")
 
 
-class CallError(Exception):
-    """A frame that no library of this table writes; the connection is of no more use."""
+class _Taken(NamedTuple):
+    """An argument that the façade is given: its place in the frame, its name, how its bytes become a value."""
+
+    place: int
+    name: str
+    value: Callable[[Given], Any]
 
 
-@dataclass(frozen=True, slots=True)
-class Given:
-    """What came for an argument: `content` is what goes in, `room` how much may be written, None of a null pointer."""
+class _Put(NamedTuple):
+    """An argument that is written: its place in the frame, how a value becomes its bytes."""
 
+    place: int
     slot: Slot
-    content: bytes | None
-    room: int | None
+    content: Callable[[Any], bytes]
 
 
 @dataclass(slots=True)
-class Done:
-    """A call that has been carried out, as far as it was."""
+class _Prepared:
+    """A call as this client has it: what depends on the table alone is worked out once."""
 
-    name: str
-    code: int | float | None
-    outputs: list[bytes]
-    refused: bool = False
+    call: Call
+    layout: Layout
+    function: Callable[..., Any]
+    null: int | float | None
+    """The code of a null pointer."""
+    taken: tuple[_Taken, ...]
+    held: tuple[int, ...]
+    """The places of what pointers in structures lead to."""
+    put: tuple[_Put, ...]
+    changed: bool
+    """Whether records are written, of which some may be as before."""
 
 
 @dataclass(slots=True)
@@ -52,10 +60,7 @@ class Caller:
     session: Session
     ways: dict[str, Callable[..., Any]] = field(default_factory=dict)
     _handles: dict[int, Any] = field(default_factory=dict)
-    _numbers: dict[int, Call] = field(default_factory=dict)
-
-    def __post_init__(self) -> None:
-        self._numbers = {each.number: each for each in self.library.calls}
+    _prepared: dict[int, _Prepared] = field(default_factory=dict)
 
     def carry_out(self, number: int, packed: bytes) -> tuple[Call, list[Given], Done]:
         """Carry out a call.
@@ -63,104 +68,104 @@ class Caller:
         Raises:
             CallError: There is no such call, or its arguments are not those of the table; nothing is carried out.
         """
-        call = self._numbers.get(number)
+        prepared = self._prepared.get(number) or self._prepare(number)
+        given = prepared.layout.unpacked(packed)
+        return prepared.call, given, self._done(prepared, given)
+
+    def _prepare(self, number: int) -> _Prepared:
+        call = self.library.by_number.get(number)
         if call is None:
             raise CallError(f"there is no call {number}")
-        given = list(_unpacked(call, packed))
-        return call, given, self._done(call, given)
+        name, slots = call.function.name, tuple(enumerate(call.slots))
+        made = self._prepared[number] = _Prepared(
+            call,
+            Layout(call),
+            self.ways.get(name) or getattr(self.session, name),
+            self._null(call),
+            tuple(
+                _Taken(k, each.argument.name, self._taker(each)) for k, each in slots if each.argument.passed
+            ),
+            tuple(k for k, each in slots if each.holder),
+            tuple(_Put(k, each, self._putter(each)) for k, each in slots if each.writes),
+            any(each.way is Way.RECORDS for each in call.slots),
+        )
+        return made
 
-    def _done(self, call: Call, given: list[Given]) -> Done:
-        name = call.function.name
-        null = Done(name, self._code(call, self.library.null), [], True)
-        if any(each.room is None for each in given if each.slot.writes and not each.slot.holder):
-            return null
-        function = self.ways.get(name) or getattr(self.session, name)
-        values = self._values(given)
+    def _done(self, prepared: _Prepared, given: list[Given]) -> Done:
+        name = prepared.call.function.name
+        for put in prepared.put:
+            if given[put.place].room is None and not put.slot.holder:
+                return Done(name, prepared.null, [], True)
+        values = {each.name: each.value(given[each.place]) for each in prepared.taken}
+        for place in prepared.held:
+            _hold(values, given[place])
         self.session.refused = False
         try:
-            answer = function(*values.values())
+            answer = prepared.function(*values.values())
         except UsageError:
-            return null
+            return Done(name, prepared.null, [], True)
         results = list(answer) if isinstance(answer, tuple) else [answer]
-        code = None if call.function.result == "void" else results.pop(0)
+        code = None if prepared.call.function.result == "void" else results.pop(0)
         if self.session.refused:
             return Done(name, code, [], True)
-        return Done(name, code, list(self._outputs(given, values, results)))
+        return Done(name, code, list(_outputs(prepared, given, values, results)))
 
-    def _values(self, given: list[Given]) -> dict[str, Any]:
-        """Return what the façade is given, by name and in order."""
-        values = {each.slot.argument.name: self._value(each) for each in given if each.slot.argument.passed}
-        for each in given:
-            holder = values.get(each.slot.holder)
-            if holder is not None:
-                held = bytearray(each.room or 0) if each.slot.writes else bytearray(each.content or b"")
-                setattr(holder, each.slot.member, held)
-        return values
-
-    def _outputs(self, given: list[Given], values: dict[str, Any], results: list[Any]) -> Iterator[bytes]:
-        """Go through what is written, each cut to its room."""
-        returned = iter(results)
-        for each in given:
-            if not each.slot.writes:
-                continue
-            argument = each.slot.argument
-            if each.slot.holder:
-                value = getattr(values[each.slot.holder], each.slot.member)
-            else:
-                value = next(returned) if argument.returned else values[argument.name]
-            yield _changed(each, self._bytes(each.slot, value)[: each.room or 0])
-
-    def _code(self, call: Call, code: int) -> int | float | None:
+    def _null(self, call: Call) -> int | float | None:
+        """Return the code of a call with a null pointer."""
         if call.function.result == "void":
             return None
         if call.function.coded:
-            return self.library.failures.get(call.function.name, code)
+            return self.library.failures.get(call.function.name, self.library.null)
         zero: int | float = call.function.zero()
         return zero
 
-    def _value(self, given: Given) -> Any:
-        """Return what the façade is given; None for a null pointer."""
-        slot, content = given.slot, given.content
+    def _taker(self, slot: Slot) -> Callable[[Given], Any]:
+        """Return what makes of an argument's bytes what the façade is given; None of a null pointer."""
         if not slot.reads:
-            return slot.element() if slot.way is Way.RECORD else self._empty(given)
-        if content is None:
-            return None
-        opaque = isinstance(slot.argument.type, Opaque)
+            if slot.way is Way.RECORD:
+                return lambda given: slot.element()
+            if slot.way is Way.RECORDS:
+                return lambda given: _records(slot, bytes(given.room or 0))
+            return lambda given: None
+        if slot.way is Way.VALUE and not isinstance(slot.argument.type, Opaque):
+            return _CONTENT
+        read = self._reader(slot)
+        return lambda given: None if given.content is None else read(given.content)
+
+    def _reader(self, slot: Slot) -> Callable[[Any], Any]:
         match slot.way:
-            case Way.VALUE | Way.NUMBERS:
-                numbers = _numbers(slot, content)
-                if _is_many(slot):
-                    return numbers
-                value = numbers[0] if numbers else 0
-                return self._handles.get(value, value) if opaque else value
+            case Way.VALUE:  # a handle
+                return lambda content: self._handles.get(content, content)
+            case Way.NUMBERS if isinstance(slot.argument.type, Opaque):
+                return lambda content: self._handles.get(number := _first(slot, content), number)
+            case Way.NUMBERS if getattr(slot.argument.type, "of", None) is int:
+                return lambda content: _numbers(slot, content)
+            case Way.NUMBERS:
+                return lambda content: _first(slot, content)
             case Way.TEXT:
-                return content.split(b"\0", 1)[0].decode("latin-1")
+                return lambda content: content.split(b"\0", 1)[0].decode("latin-1")
             case Way.MEMORY:
-                return content
+                return lambda content: content
             case Way.RECORD:
-                return slot.element.from_buffer_copy(content[: slot.width].ljust(slot.width, b"\0"))
-        return self._records(slot, content)
+                width, made = slot.width, slot.element.from_buffer_copy
+                return lambda content: made(content[:width].ljust(width, b"\0"))
+        return lambda content: _records(slot, content)
 
-    def _empty(self, given: Given) -> Any:
-        return self._records(given.slot, bytes(given.room or 0)) if given.slot.way is Way.RECORDS else None
-
-    def _records(self, slot: Slot, content: bytes) -> list[Any]:
-        whole = range(0, len(content) - slot.width + 1, slot.width)
-        return [slot.element.from_buffer_copy(content[at : at + slot.width]) for at in whole]
-
-    def _bytes(self, slot: Slot, value: Any) -> bytes:
-        """Return an output as it lies in the program's memory."""
+    def _putter(self, slot: Slot) -> Callable[[Any], bytes]:
+        """Return what makes of an output what lies in the program's memory."""
         match slot.way:
             case Way.NUMBERS if isinstance(slot.argument.type, Opaque):
-                return bytes(slot.element(self._number(value)))
+                return lambda value: bytes(slot.element(self._number(value)))
             case Way.NUMBERS:
-                numbers = value if isinstance(value, (list, tuple)) else [value]
-                return b"".join(bytes(slot.element(each)) for each in numbers)
+                return lambda value: b"".join(
+                    bytes(slot.element(each))
+                    for each in (value if isinstance(value, (list, tuple)) else (value,))
+                )
             case Way.TEXT:
-                return str(value).encode("latin-1", "replace") + b"\0"
+                return lambda value: str(value).encode("latin-1", "replace") + b"\0"
             case Way.RECORDS:
-                return b"".join(bytes(each) for each in value)
-        return bytes(value)
+                return lambda value: b"".join(bytes(each) for each in value)
+        return bytes
 
     def _number(self, handle: Any) -> int:
         """Return the number that stands for a handle; 0 for none."""
@@ -171,6 +176,30 @@ class Caller:
             raise CallError(f"more than {_MOST_HANDLES} handles")
         self._handles[number] = handle
         return number
+
+
+def _hold(values: dict[str, Any], given: Given) -> None:
+    """Put what a pointer in a structure leads to into the structure."""
+    slot = given.slot
+    holder = values.get(slot.holder)
+    if holder is not None:
+        held = bytearray(given.room or 0) if slot.writes else bytearray(given.content or b"")
+        setattr(holder, slot.member, held)
+
+
+def _outputs(
+    prepared: _Prepared, given: list[Given], values: dict[str, Any], results: list[Any]
+) -> Iterator[bytes]:
+    """Go through what is written, each cut to its room."""
+    returned = iter(results)
+    for place, slot, content in prepared.put:
+        if slot.holder:
+            value = getattr(values[slot.holder], slot.member)
+        else:
+            argument = slot.argument
+            value = next(returned) if argument.returned else values[argument.name]
+        made = content(value)[: given[place].room or 0]
+        yield _changed(given[place], made) if prepared.changed else made
 
 
 def _changed(given: Given, content: bytes) -> bytes:
@@ -186,60 +215,16 @@ def _changed(given: Given, content: bytes) -> bytes:
     return content[: count * width]
 
 
-def _is_many(slot: Slot) -> bool:
-    return getattr(slot.argument.type, "of", None) is int
-
-
 def _numbers(slot: Slot, content: bytes) -> list[Any]:
     whole = range(0, len(content) - slot.width + 1, slot.width)
     return [slot.element.from_buffer_copy(content[at : at + slot.width]).value for at in whole]
 
 
-def _unpacked(call: Call, packed: bytes) -> Iterator[Given]:
-    """Go through the arguments in a frame.
-
-    Raises:
-        CallError: They are not as long as they have to be.
-    """
-    at = 0
-
-    def taken(size: int) -> bytes:
-        nonlocal at
-        if size > len(packed) - at:
-            raise CallError(f"{call.function.name} is cut at byte {len(packed)}")
-        at += size
-        return packed[at - size : at]
-
-    def size() -> int | None:
-        found: int = _SIZE.unpack(taken(4))[0]
-        return None if found == _NULL else found
-
-    for slot in call.slots:
-        if slot.way is Way.VALUE:
-            yield Given(slot, taken(slot.width), 0)
-            continue
-        content: bytes | None = b""
-        room: int | None = 0
-        if slot.reads:
-            content = None if (count := size()) is None else taken(count)
-        if slot.writes:
-            room = size()
-        yield Given(slot, content, room)
-    if at != len(packed):
-        raise CallError(f"{call.function.name} is followed by {len(packed) - at} bytes")
+def _first(slot: Slot, content: bytes) -> Any:
+    numbers = _numbers(slot, content[: slot.width])
+    return numbers[0] if numbers else 0
 
 
-def answer_frame(call: Call, serial: int, done: Done, most: int) -> bytes:
-    """Return the answer to a call: state, result, the sizes of all outputs, the outputs."""
-    result = bytes(8)
-    if isinstance(done.code, float):
-        result = struct.pack("<d", done.code)
-    elif done.code is not None:
-        result = struct.pack("<q", int(done.code))
-    writes = sum(each.writes for each in call.slots)
-    outputs = done.outputs or [b""] * writes
-    body = _ANSWER.pack(call.number, serial, _REFUSED if done.refused else _CARRIED_OUT) + result
-    body += b"".join(_SIZE.pack(len(each)) for each in outputs) + b"".join(outputs)
-    if len(body) > most:
-        raise CallError(f"the answer to {done.name} has {len(body)} bytes")
-    return _SIZE.pack(len(body)) + body
+def _records(slot: Slot, content: bytes) -> list[Any]:
+    whole = range(0, len(content) - slot.width + 1, slot.width)
+    return [slot.element.from_buffer_copy(content[at : at + slot.width]) for at in whole]

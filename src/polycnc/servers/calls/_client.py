@@ -11,13 +11,15 @@ from typing import Any
 
 from polycnc.controllers.library.clib import CLibrary, Slot, Way
 from polycnc.errors import UsageError
-from polycnc.servers.calls._caller import Caller, CallError, Done, Given, answer_frame
+from polycnc.servers.calls._caller import Caller
+from polycnc.servers.calls._frames import CallError, Done, Given, answer_frame
 
 MAGIC = b"PNCCALL1"
 _HELLO = struct.Struct("<8sBBH16s16s16s")
 _WELCOME = struct.Struct("<8si")
 _HEAD = struct.Struct("<HH")
 _SIZE = struct.Struct("<I")
+_BEGIN = _SIZE.size + _HEAD.size
 _MOST = 65536
 _MOST_BEHIND = 4 * _MOST  # bytes that wait to be carried out
 _WIDTHS = (4, 8)
@@ -81,13 +83,13 @@ class Trace:
         self._file.close()
 
 
-def _shown(slot: Slot, content: bytes | None) -> Any:
+def _shown(slot: Slot, content: Any) -> Any:
     """Return a value as people read it: numbers, a text, else hexadecimal bytes."""
-    if content is None:
-        return None
+    if content is None or slot.way is Way.VALUE:
+        return content
     if slot.way is Way.TEXT:
         return content.split(b"\0", 1)[0].decode("latin-1")
-    if slot.way in (Way.VALUE, Way.NUMBERS):
+    if slot.way is Way.NUMBERS:
         whole = range(0, len(content) - slot.width + 1, slot.width)
         numbers = [slot.element.from_buffer_copy(content[at : at + slot.width]).value for at in whole]
         return numbers[0] if len(numbers) == 1 else numbers
@@ -115,16 +117,16 @@ class CallClient:
         if self.ended:
             return b""
         self._behind += data
-        sent = bytearray()
+        sent = list[bytes]()
         try:
             if len(self._behind) > _MOST_BEHIND:
                 raise CallError(f"more than {_MOST_BEHIND} bytes wait")
-            while (more := self._one()) is not None:
-                sent += more
+            while self._behind and not self.ended and (more := self._one()) is not None:
+                sent.append(more)
         except CallError as error:
             self.tell(str(error))
             self.ended = True
-        return bytes(sent)
+        return b"".join(sent)
 
     def _one(self) -> bytes | None:
         """Return the answer to the next whole thing, None if there is none.
@@ -132,22 +134,20 @@ class CallClient:
         Raises:
             CallError: It is nothing that a library sends.
         """
-        if self.ended:
-            return None
+        behind = self._behind
         if self.caller is None:
-            if not MAGIC.startswith(self._behind[: len(MAGIC)]):
+            if not MAGIC.startswith(behind[: len(MAGIC)]):
                 raise CallError("a client that does not say hello")
-            return self._welcomed(self._taken(_HELLO.size)) if len(self._behind) >= _HELLO.size else None
-        if len(self._behind) < _SIZE.size:
+            return self._welcomed(self._taken(_HELLO.size)) if len(behind) >= _HELLO.size else None
+        if len(behind) < _SIZE.size:
             return None
-        (size,) = _SIZE.unpack_from(self._behind)
+        (size,) = _SIZE.unpack_from(behind)
         if not _HEAD.size <= size <= _MOST - _SIZE.size:
             raise CallError(f"a frame of {size} bytes")
-        if len(self._behind) < _SIZE.size + size:
+        if len(behind) < _SIZE.size + size:
             return None
-        frame = self._taken(_SIZE.size + size)
-        number, serial = _HEAD.unpack_from(frame, _SIZE.size)
-        call, given, done = self.caller.carry_out(number, frame[_SIZE.size + _HEAD.size :])
+        number, serial = _HEAD.unpack_from(behind, _SIZE.size)
+        call, given, done = self.caller.carry_out(number, self._taken(_SIZE.size + size)[_BEGIN:])
         if self.trace is not None:
             self.trace.write(self.now_s(), given, done)
         return answer_frame(call, serial, done, _MOST - _SIZE.size)

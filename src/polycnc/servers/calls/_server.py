@@ -16,6 +16,7 @@ from polycnc.servers.machines import LOOPBACK, Log, ServedMachine
 
 _MOST_CLIENTS = 256
 _HELLO_S = 10.0
+_READ = 16_384  # bytes at once
 
 
 class CallsServer:
@@ -32,6 +33,10 @@ class CallsServer:
     ) -> None:
         self.address, self.port = address, port
         self.lines: set[_Line] = set()
+        kinds = dict.fromkeys(each.kind for each in machines)
+        self._libraries = {LIBRARIES[kind].load().name: kind for kind in kinds}
+        for kind in kinds:
+            LIBRARIES[kind].load().prepare()  # no client waits for it
         self._machines = machines
         self._log = log or Log()
         self.trace = None if trace is None else Trace(trace)
@@ -75,12 +80,11 @@ class CallsServer:
         line = _Line(self)
         transport.set_protocol(line)
         line.connection_made(transport)
-        line.data_received(data)
+        line.take(data)
 
     def find(self, name: str) -> tuple[Caller, list[ServedMachine]] | None:
         """Return a caller of a library, and the machines that it reaches."""
-        kinds = {each.kind for each in self._machines}
-        kind = next((each for each in kinds if LIBRARIES[each].load().name == name), None)
+        kind = self._libraries.get(name)
         if kind is None:
             return None
         machines = [each for each in self._machines if each.kind == kind]
@@ -92,8 +96,11 @@ class CallsServer:
         self._log.write("refused", door="calls", reason=sentence)
 
 
-class _Line(asyncio.Protocol):
-    """One connection. While time cannot pass for it, or its peer takes nothing, nothing more is read."""
+class _Line(asyncio.BufferedProtocol):
+    """One connection. While time cannot pass for it, or its peer takes nothing, nothing more is read.
+
+    It reads into a buffer of its own: asyncio's has 256 kB for each read, which costs more than a whole call.
+    """
 
     _transport: asyncio.Transport
 
@@ -102,6 +109,7 @@ class _Line(asyncio.Protocol):
         self._machines: list[ServedMachine] = []
         self._client = CallClient(self._find, server.tell, server.trace, self._now_s)
         self._limit: asyncio.TimerHandle | None = None
+        self._buffer = memoryview(bytearray(_READ))
 
     def _find(self, name: str) -> Caller | None:
         found = self._server.find(name)
@@ -123,7 +131,14 @@ class _Line(asyncio.Protocol):
         self._server.lines.add(self)
         self._limit = asyncio.get_running_loop().call_later(_HELLO_S, self.abort)
 
-    def data_received(self, data: bytes) -> None:
+    def get_buffer(self, sizehint: int) -> memoryview:
+        return self._buffer
+
+    def buffer_updated(self, nbytes: int) -> None:
+        self.take(bytes(self._buffer[:nbytes]))
+
+    def take(self, data: bytes) -> None:
+        """Carry out what is whole with these bytes."""
         if not self._machines:  # a hello reaches no machine
             self._send(self._client.receive(data))
             return

@@ -137,6 +137,15 @@ class CLibrary:
             if each.name not in self.left_out
         )
 
+    def prepare(self) -> None:
+        """Work out now what else the first client would wait for."""
+        _ = self.by_number, self.table_hash
+
+    @cached_property
+    def by_number(self) -> Mapping[int, Call]:
+        """All functions by their numbers."""
+        return {each.number: each for each in self.calls}
+
     @cached_property
     def table_hash(self) -> bytes:
         """16 bytes that differ when anything does that both sides have to agree on."""

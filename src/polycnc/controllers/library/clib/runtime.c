@@ -172,20 +172,45 @@ static int pc_send(pc_socket socket, const unsigned char *bytes, uint32_t size)
     return 1;
 }
 
+/* Receive some bytes, at most so many; 0 if nothing more comes. */
+static uint32_t pc_some(pc_socket socket, unsigned char *bytes, uint32_t most)
+{
+    int got;
+#ifdef _WIN32
+    got = (int)recv(socket, (char *)bytes, (int)most, 0);
+#else
+    do
+        got = (int)recv(socket, (char *)bytes, most, 0);
+    while (got < 0 && errno == EINTR);
+#endif
+    return got > 0 ? (uint32_t)got : 0;
+}
+
 static int pc_receive(pc_socket socket, unsigned char *bytes, uint32_t size)
 {
-    while (size) {
-        int got = (int)recv(socket, (char *)bytes, (int)size, 0);
-#ifndef _WIN32
-        if (got < 0 && errno == EINTR)
-            continue;
-#endif
-        if (got <= 0)
+    uint32_t got;
+    for (; size; bytes += got, size -= got)
+        if (!(got = pc_some(socket, bytes, size)))
             return 0;
-        bytes += got;
-        size -= (uint32_t)got;
-    }
     return 1;
+}
+
+/* Receive an answer, mostly in one go, since nothing follows it; its size, 0 if it is none. */
+static uint32_t pc_answer(pc_socket socket, unsigned char *frame)
+{
+    uint32_t have = 0, size = PC_HEAD, got;
+    while (have < size) {
+        if (!(got = pc_some(socket, frame + have, PC_MOST - have)))
+            return 0;
+        have += got;
+        if (have >= 4) {
+            memcpy(&size, frame, 4);
+            if (size < PC_HEAD - 4 || size > PC_MOST - 4)
+                return 0;
+            size += 4;
+        }
+    }
+    return have == size ? size : 0;
 }
 
 /* Connect within a time, and let no later wait take longer; -1: for ever. */
@@ -488,15 +513,12 @@ static int pc_exchange(pc_connection *on, uint16_t number, const pc_argument *gi
             pc_leave(&on->lock);
             return PC_CODE_NULL;
         }
-        if (pc_send(on->socket, frame, size) && pc_receive(on->socket, frame, 4)) {
-            memcpy(&size, frame, 4);
-            if (size >= PC_HEAD - 4 && size <= PC_MOST - 4 && pc_receive(on->socket, frame + 4, size)) {
-                memcpy(heard, frame + 4, 4);
-                if (heard[0] == number && heard[1] == serial && pc_unpack(frame, size + 4, given, count)) {
-                    memcpy(&result->whole, frame + 12, 8);
-                    memcpy(&result->real, frame + 12, 8);
-                    code = 0;
-                }
+        if (pc_send(on->socket, frame, size) && (size = pc_answer(on->socket, frame)) != 0) {
+            memcpy(heard, frame + 4, 4);
+            if (heard[0] == number && heard[1] == serial && pc_unpack(frame, size, given, count)) {
+                memcpy(&result->whole, frame + 12, 8);
+                memcpy(&result->real, frame + 12, 8);
+                code = 0;
             }
         }
         if (code) {

@@ -1,0 +1,129 @@
+"""Measure the C library: a call over the socket beside the same one in Python, a client's first call, size, leaks."""
+
+from __future__ import annotations
+
+import ctypes
+import os
+import subprocess
+import sys
+import tempfile
+import time
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+from _measure import Figure, at_most
+from _report import run_script
+from polycnc.controllers.fanuc import PowerMate, fwlib
+from polycnc.servers.calls import build_library, library_of, target_here, write_library
+
+_AXES = 3
+_LENGTH = 4 + 4 * _AXES
+_AT_ONCE = 10  # calls of a batch: few enough that some batches are not interrupted
+_CLIENT = """\
+#include <stdio.h>
+#include "fwlib32.h"
+int main(void)
+{
+    unsigned short handle;
+    ODBAXIS at;
+    int code = cnc_allclibhndl(&handle);
+    code |= cnc_absolute(handle, ALL_AXES, 16, &at);
+    return code | cnc_freelibhndl(handle);
+}
+"""
+
+
+def _best_s(call: Callable[[], object], batches: int) -> float:
+    """Return the time of a call in the quickest batch."""
+    best_s = float("inf")
+    for _ in range(batches):
+        begin = time.perf_counter()
+        for _ in range(_AT_ONCE):
+            call()
+        best_s = min(best_s, (time.perf_counter() - begin) / _AT_ONCE)
+    return best_s
+
+
+def _facade() -> Callable[[], object]:
+    session = fwlib.Session()
+    session.attach(0, PowerMate(_AXES, characters=128_000))
+    _, handle = session.cnc_allclibhndl()
+    return lambda: session.cnc_absolute(handle, fwlib.ALL_AXES, _LENGTH)
+
+
+def _over_socket(library: Any) -> Callable[[], object]:
+    handle, at = ctypes.c_ushort(), fwlib.ODBAXIS()
+    if library.cnc_allclibhndl(ctypes.byref(handle)):
+        raise RuntimeError("the server is not found")
+    function, given = library.cnc_absolute, (handle, ctypes.c_short(-1), ctypes.c_short(_LENGTH))
+    to = ctypes.byref(at)
+    return lambda: function(*given, to)
+
+
+def figures(quick: bool) -> list[Figure]:
+    """Measure and return the figures."""
+    with tempfile.TemporaryDirectory() as name:
+        folder = Path(name)
+        write_library(library_of("fanuc"), folder)
+        built = build_library(library_of("fanuc"), folder, target_here())
+        served = subprocess.Popen(
+            [sys.executable, "-m", "polycnc.cli", "calls", "fanuc", "--port", "0"],
+            stdout=subprocess.PIPE,
+            env={**os.environ, "PYTHONUNBUFFERED": "1"},
+        )
+        try:
+            assert served.stdout is not None
+            place = served.stdout.readline().decode().split()[1]
+            os.environ["POLYCNC_CALLS"] = place
+            return _figures(quick, folder, built, served.pid)
+        finally:
+            served.terminate()
+            served.communicate()
+
+
+def _figures(quick: bool, folder: Path, built: Path, server: int) -> list[Figure]:
+    batches = 200 if quick else 2_000
+    call, facade = _over_socket(ctypes.CDLL(str(built))), _facade()
+    over_s, python_s = _best_s(call, batches), _best_s(facade, batches)
+    size = at_most("C library: size of libfwlib32", built.stat().st_size / 1e3, "kB", 200)
+    source = folder / "client.c"
+    source.write_text(_CLIENT)
+    client = folder / "client"
+    subprocess.run(
+        ["cc", "-o", client, source, "-I", folder, "-L", folder, "-lfwlib32", f"-Wl,-rpath,{folder}"],
+        check=True,
+    )
+    count = 50 if quick else 1_000
+    first_ms = min(_run_ms(client) for _ in range(20))
+    before_kb, files = _held_kb(server), _files(server)
+    for _ in range(count):
+        _run_ms(client)
+    return [
+        at_most(
+            "C library: a call over the socket, as ratio to Python", over_s / python_s, "", 2.5,
+            f"cnc_absolute: {over_s * 1e6:.0f} us, in Python {python_s * 1e6:.0f} us",
+        ),
+        at_most("C library: a program that opens, calls and frees", first_ms, "ms", 50),
+        size,
+        at_most(f"C library: memory after {count} programs", _held_kb(server) - before_kb, "kB more", 2_000),
+        at_most(f"C library: open files after {count} programs", _files(server) - files, "more", 0),
+    ]  # fmt: skip
+
+
+def _run_ms(client: Path) -> float:
+    begin = time.perf_counter()
+    subprocess.run([client], check=True)
+    return (time.perf_counter() - begin) * 1e3
+
+
+def _held_kb(process: int) -> float:
+    return int(Path(f"/proc/{process}/statm").read_text().split()[1]) * os.sysconf("SC_PAGE_SIZE") / 1e3
+
+
+def _files(process: int) -> int:
+    return len(list(Path(f"/proc/{process}/fd").iterdir()))
+
+
+if __name__ == "__main__":
+    run_script("C library", figures)

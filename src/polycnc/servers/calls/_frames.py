@@ -1,0 +1,131 @@
+"""Frames of calls: the arguments in one, and the answer."""
+
+from __future__ import annotations
+
+import struct
+from dataclasses import dataclass
+from typing import Any, NamedTuple
+
+from polycnc.controllers.library.clib import Call, Slot, Way
+
+_NULL = 0xFFFFFFFF
+_SIZE = struct.Struct("<I")
+_ANSWER = struct.Struct("<IHHI")
+_WHOLE, _REAL = struct.Struct("<q"), struct.Struct("<d")
+_CARRIED_OUT, _REFUSED = 0, 1
+_FORMATS = {1: "b", 2: "h", 4: "i", 8: "q"}
+
+
+class CallError(Exception):
+    """A frame that no library of this table writes; the connection is of no more use."""
+
+
+class Given(NamedTuple):
+    """What came for an argument: `content` is what goes in, `room` how much may be written, None of a null pointer."""
+
+    slot: Slot
+    content: Any
+    """A number of `Way.VALUE`, else bytes."""
+    room: int | None
+
+
+@dataclass(slots=True)
+class Done:
+    """A call that has been carried out, as far as it was."""
+
+    name: str
+    code: int | float | None
+    outputs: list[bytes]
+    refused: bool = False
+
+
+class Layout:
+    """How the arguments of a call lie in a frame; most calls read through no pointer and have frames of one size."""
+
+    def __init__(self, call: Call) -> None:
+        self.call = call
+        plain = all(each.way is Way.VALUE or not each.reads for each in call.slots)
+        self._values = [
+            struct.Struct(f"<{_format(each)}") if each.way is Way.VALUE else _SIZE for each in call.slots
+        ]
+        self._whole = struct.Struct("<" + "".join(map(_format, call.slots))) if plain else None
+
+    def unpacked(self, packed: bytes) -> list[Given]:
+        """Return the arguments in a frame.
+
+        Raises:
+            CallError: They are not as long as they have to be.
+        """
+        if self._whole is None or self._whole.size != len(packed):
+            return self._one_by_one(packed)
+        return [
+            Given(slot, each, 0)
+            if slot.way is Way.VALUE
+            else Given(slot, b"", None if each == _NULL else each)
+            for slot, each in zip(self.call.slots, self._whole.unpack(packed), strict=True)
+        ]
+
+    def _one_by_one(self, packed: bytes) -> list[Given]:
+        at, given = 0, list[Given]()
+        for slot, value in zip(self.call.slots, self._values, strict=True):
+            if slot.way is Way.VALUE:
+                given.append(Given(slot, self._number(value, packed, at), 0))
+                at += value.size
+                continue
+            content: bytes | None = b""
+            room: int | None = 0
+            if slot.reads:
+                size = self._size(packed, at)
+                at += _SIZE.size
+                content = None if size is None else packed[at : at + size]
+                at += size or 0
+            if slot.writes:
+                room = self._size(packed, at)
+                at += _SIZE.size
+            given.append(Given(slot, content, room))
+        if at > len(packed):
+            raise self._cut(packed)
+        if at < len(packed):
+            raise CallError(f"{self.call.function.name} is followed by {len(packed) - at} bytes")
+        return given
+
+    def _size(self, packed: bytes, at: int) -> int | None:
+        """Return a size in a frame; None of a null pointer."""
+        found: int = self._number(_SIZE, packed, at)
+        return None if found == _NULL else found
+
+    def _number(self, form: struct.Struct, packed: bytes, at: int) -> Any:
+        if at + form.size > len(packed):
+            raise self._cut(packed)
+        return form.unpack_from(packed, at)[0]
+
+    def _cut(self, packed: bytes) -> CallError:
+        return CallError(f"{self.call.function.name} is cut at byte {len(packed)}")
+
+
+def _format(slot: Slot) -> str:
+    """Return the format of a number: a float, or so many bytes with a sign or without; of a pointer, its size."""
+    if slot.way is not Way.VALUE:
+        return "I"
+    below = slot.element(-1).value
+    if isinstance(below, float):
+        return "d" if slot.width == _REAL.size else "f"
+    form = _FORMATS[slot.width]
+    return form if below < 0 else form.upper()
+
+
+def answer_frame(call: Call, serial: int, done: Done, most: int) -> bytes:
+    """Return the answer to a call: state, result, the sizes of all outputs, the outputs.
+
+    Raises:
+        CallError: It is longer than `most` bytes.
+    """
+    code = done.code or 0
+    result = _REAL.pack(code) if isinstance(code, float) else _WHOLE.pack(int(code))
+    outputs = done.outputs or [b"" for each in call.slots if each.writes]
+    body = b"".join((result, *[_SIZE.pack(len(each)) for each in outputs], *outputs))
+    size = len(body) + _ANSWER.size - _SIZE.size
+    if size > most:
+        raise CallError(f"the answer to {done.name} has {size} bytes")
+    state = _REFUSED if done.refused else _CARRIED_OUT
+    return _ANSWER.pack(size, call.number, serial, state) + body
