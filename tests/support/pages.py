@@ -10,6 +10,7 @@ from __future__ import annotations
 import json
 import os
 import re
+import sys
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -24,6 +25,17 @@ _SAVE = re.compile(r"[Ss]ave this\s+as\s+`([^`]+)`")
 _COMMAND = re.compile(r"^\$ (.*)\n((?:(?!\$ ).*\n)*)", re.MULTILINE)
 _NOT_RUN = ("scripts/", "pip ", "git ", "mkdocs ")  # they change the checkout or need the network
 _OUTPUT = "output"
+PYTEST = (
+    "env",
+    "-u",
+    "POLYCNC_COMPILE_AT_ONCE",
+    "PYTEST_DISABLE_PLUGIN_AUTOLOAD=1",
+    sys.executable,
+    "-m",
+    "pytest",
+    "-p",
+    "polycnc.testing",
+)
 
 
 @dataclass(frozen=True)
@@ -71,10 +83,15 @@ def steps(page: Path) -> list[Step]:
             found.append(Step("file", fence.title, fence.text, "", where))
         if fence.language == "console":
             found += _commands(fence.text, where)
-        elif fence.language == "python" and "@pytest" not in fence.text:  # that would be how to write a test
+        elif fence.language == "python" and not _is_test(fence):
             shown = following.text if following is not None and following.title == _OUTPUT else ""
             found.append(Step("python", where, fence.text, shown, where))
     return found
+
+
+def _is_test(fence: Fence) -> bool:
+    """Return whether a block is a test, or shows how to write one."""
+    return "@pytest" in fence.text or fence.title.startswith("test_")
 
 
 def _commands(text: str, where: str) -> list[Step]:
@@ -83,7 +100,9 @@ def _commands(text: str, where: str) -> list[Step]:
         if command.startswith(_NOT_RUN):
             continue
         words = command.partition(" #")[0].split()
-        assert words[0] in ("polycnc", "head", "cat"), f"{where}: nobody said how to run '{command}'"
+        assert words[0] in ("polycnc", "pytest", "head", "cat"), (
+            f"{where}: nobody said how to run '{command}'"
+        )
         kind = "polycnc" if words[0] == "polycnc" else "shell"
         found.append(Step(kind, " ".join(words), "", shown, f"{where}: {command}"))
     return found
@@ -93,9 +112,10 @@ def run_page(page: Path, folder: Path) -> None:
     """Do in `folder` what a reader of the page does, and hold what is printed against what is shown."""
     tools = folder / ".bin"
     tools.mkdir()
-    command = tools / "polycnc"
-    command.write_text(f'#!/bin/sh\nexec {" ".join(COMMAND)} "$@"\n', encoding="utf-8")
-    command.chmod(0o755)
+    for name, words in {"polycnc": COMMAND, "pytest": PYTEST}.items():
+        command = tools / name
+        command.write_text(f'#!/bin/sh\nexec {" ".join(words)} "$@"\n', encoding="utf-8")
+        command.chmod(0o755)
     todo = steps(page)
     given = json.dumps([(step.kind, step.what, step.text) for step in todo])
     done = script(_DRIVER, given, folder, PATH=f"{tools.resolve()}:{os.environ.get('PATH', '')}")
