@@ -231,8 +231,7 @@ class PathRunner:
         record = self.executed_tag
         self.take_switch()
         self.events.pass_stop()
-        self.moment.hold = False
-        self.moment.state = RunState.ACTIVE
+        self.moment.hold, self.moment.state = False, RunState.ACTIVE
         if within:
             self._step_from(step, record)
         else:
@@ -301,14 +300,11 @@ class PathRunner:
     def look(self) -> None:
         """See whether the path has come to an end, or to the end of a block."""
         row = self.row
+        ready = row["state"] == kernel.READY and not self.moment.unanswered
         if self.moment.dropping:
             if self.at_rest:
                 self._drop()
-        elif (
-            self.moment.state is RunState.ACTIVE
-            and row["state"] == kernel.READY
-            and not self.moment.unanswered
-        ):
+        elif self.moment.state is RunState.ACTIVE and ready:
             if row["head"] >= row["limit"]:
                 self._stop_at_block()
             elif self.feed.begins_with_mark and self._stand_at_marks():
@@ -334,12 +330,9 @@ class PathRunner:
         kernel.drop_queue(state.seg, state.paths, self.path)
         self.channel.writer.clear()
         self.feed.clear()
-        self.moment.dropping = False
-        self.moment.hold = False
-        self.moment.stop = None
-        self.moment.unanswered = self.moment.barrier = False
-        self.moment.probing = None
-        self.moment.met = None
+        moment = self.moment
+        moment.dropping = moment.hold = moment.unanswered = moment.barrier = False
+        moment.stop = moment.probing = moment.met = None
         self.path_hold.apply()
 
     def _stop_by(self, text: str, code: str) -> None:
