@@ -221,6 +221,7 @@ def test_words_that_only_begin_like_if_are_text() -> None:
     ]
 
 
+@pytest.mark.covers("post.seq.output")
 @pytest.mark.covers("post.macro.elements", "post.macro.line_is_block")
 def test_all_kinds_of_elements_in_one_macro() -> None:
     macro = "IF(T==3)\n@1@(TOOL )!M06!$TOOLCHANGE$<S=50*2>\"<>\"'/,-200'$S$\n@0@&S&$S$\nENDIF"
@@ -337,7 +338,7 @@ def test_reserved_words_expand_to_texts_and_numbers() -> None:
     assert blocks_of(macro, words={"PARTNAME": "A & B", "PATHNUMBER": 2, "DWELL": 0.25}) == [
         "(A & B 2 0.25)T00"
     ]
-    words = {"PARTNAME": "  A  ", "PATHNUMBER": -2, "DWELL": -0.125}
+    words: dict[str, float | str] = {"PARTNAME": "  A  ", "PATHNUMBER": -2, "DWELL": -0.125}
     assert blocks_of(macro, words=words) == ["(  A   -2 -0.125)T00"]
     assert blocks_of("$TOOLCHANGE$", words={"T": 7}) == ["T07"]  # a system that gives no text
     assert blocks_of("$TOOLCHANGE$", words={"T": 7, "TOOLCHANGE": "T7"}) == ["T7"]
