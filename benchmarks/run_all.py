@@ -35,6 +35,7 @@ SCRIPTS = {
     "bench_post.py": "Post-processor macros",
     "bench_focas.py": "FOCAS server",
     "bench_plants.py": "MTConnect agent",
+    "bench_fleet.py": "Fleets",
     "bench_batch.py": "Batches",
     "bench_stock.py": "Stock",
 }

@@ -7,7 +7,7 @@ _HEAD = """# Events of a tool path
 <!-- Written by scripts/reference. -->
 
 A tool path is a row of events. Each calls the macro of its name in the [control file](post-control-file.md), after it
-has set the words that the macro may write. What statements of a tool path are which event is told in
+has set the words that the macro may write. What statements of a tool path are which event is described in
 [tool paths](post-tool-paths.md).
 
 ## Events

@@ -1,7 +1,8 @@
-"""Take the pictures of the documentation from real pages: what `polycnc view` writes, in a browser."""
+"""Take the pictures of the documentation from real pages: of `polycnc view` and of a served machine, in a browser."""
 
 from __future__ import annotations
 
+import re
 import runpy
 import shutil
 import subprocess
@@ -9,7 +10,8 @@ import sys
 import tempfile
 from pathlib import Path
 
-from playwright.sync_api import sync_playwright
+import httpx
+from playwright.sync_api import Browser, sync_playwright
 
 REPOSITORY = Path(__file__).resolve().parents[1]
 IMAGES = REPOSITORY / "docs" / "images"
@@ -43,7 +45,32 @@ def main() -> None:
             page.screenshot(path=IMAGES / image)
             page.close()
             print(f"wrote {IMAGES / image}")
+        operate(browser)
         browser.close()
+
+
+def operate(browser: Browser) -> None:
+    """Take the page of a machine that executes a program."""
+    command = [sys.executable, "-m", "polycnc.cli", "serve", "--plain", "mill3", "--doors", "http=0"]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as served:
+        assert served.stdout is not None
+        found = re.search(r"http://\S+", served.stdout.readline())
+        assert found
+        program = (REPOSITORY / "examples" / "bracket.nc").read_bytes()
+        with httpx.Client(base_url=f"{found[0]}/api/machines/machine", timeout=60) as machine:
+            machine.put("/programs/BRACKET", content=program).raise_for_status()
+            for asked in (
+                {"command": "select_mode", "mode": "auto"},
+                {"command": "select_program", "program": "BRACKET"},
+                {"command": "cycle_start"},
+            ):
+                machine.post("/commands", json=asked).raise_for_status()
+        page = browser.new_page(viewport={"width": 1280, "height": 860}, color_scheme="light")
+        page.goto(found[0])
+        page.wait_for_timeout(20_000)
+        page.screenshot(path=IMAGES / "operate.png")
+        print(f"wrote {IMAGES / 'operate.png'}")
+        served.terminate()
 
 
 if __name__ == "__main__":

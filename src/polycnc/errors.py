@@ -50,11 +50,22 @@ class UsageError(PolycncError, ValueError):
 
 
 class ConfigurationError(UsageError):
-    """A configuration file with an unknown key, a missing key or a value out of range."""
+    """A configuration file with an unknown key, a missing key or a value out of range.
 
-    def __init__(self, what: str, *, hint: str = "", position: SourcePosition | None = None) -> None:
+    `parts` are all that is wrong with it, each by itself, where it is more than one thing.
+    """
+
+    def __init__(
+        self,
+        what: str,
+        *,
+        hint: str = "",
+        position: SourcePosition | None = None,
+        parts: tuple[ConfigurationError, ...] = (),
+    ) -> None:
         super().__init__(what, hint=hint)
         self.position = position
+        self.parts = parts
 
     def __str__(self) -> str:
         return _placed(self.what, self.position, self.hint)

@@ -68,7 +68,7 @@ class Rig:
         """Go on to the end; return all that can be seen then."""
         while self.run.active or self.run.state is RunState.PROGRAM_STOP:
             self.go(100_000)
-        self.run.feed.pass_marks()  # how many are left depends on how often somebody looked
+        self.run.feed.blocks.pass_marks()  # how many are left depends on how often somebody looked
         variables = self.language.variables
         return (
             self.run.state,
@@ -115,7 +115,7 @@ class CplRig(Rig):
     def end(self) -> tuple[object, ...]:
         while self.run.active:
             self.go(100_000)
-        self.run.feed.pass_marks()
+        self.run.feed.blocks.pass_marks()
         return (
             self.run.state,
             str(self.run.error),

@@ -191,7 +191,7 @@ def test_a_run_that_stands_within_such_lines_goes_on_from_a_snapshot() -> None:
     def ended(run: ProgramRun) -> tuple[object, ...]:
         while run.active:
             run.advance(100_000)
-        run.feed.pass_marks()
+        run.feed.blocks.pass_marks()
         return run.state, str(run.error), run.machine.snapshot(), run.snapshot()
 
     run = started()

@@ -97,13 +97,23 @@ class Editor:
 
     def ask(self, method: str, params: Any) -> Any:
         """Return the result of a request."""
+        answer = self._answer(method, params)
+        assert "error" not in answer, answer["error"]
+        return answer["result"]
+
+    def refused(self, method: str, uri: str, line: int, character: int, **more: Any) -> str:
+        """Return what the server says to a request that it refuses."""
+        place = {"textDocument": {"uri": uri}, "position": {"line": line, "character": character}}
+        said: str = self._answer(method, {**place, **more})["error"]["message"]
+        return said
+
+    def _answer(self, method: str, params: Any) -> dict[str, Any]:
         self._ids += 1
         self._send({"id": self._ids, "method": method, "params": params})
         while True:
             message = self._take()
             if message.get("id") == self._ids and "method" not in message:
-                assert "error" not in message, message["error"]
-                return message["result"]
+                return message
 
     def ask_at(self, method: str, uri: str, line: int, character: int, **more: Any) -> Any:
         """Return the result of a request about a place."""

@@ -122,7 +122,7 @@ def test_a_worker_is_killed_and_everything_comes_once(
 
 def test_nobody_answers() -> None:
     with pytest.raises(UsageError, match=r"no Dask scheduler answers at tcp://127\.0\.0\.1:9"):
-        batches.ClusterWorkers.at("tcp://127.0.0.1:9")
+        batches.ClusterWorkers.at("tcp://127.0.0.1:9", wait_s=0.5)
 
 
 def test_without_the_extra_the_command_says_what_to_install(

@@ -29,10 +29,12 @@ def _name(page: Path) -> str:
 ELSEWHERE = {
     "docs/tutorials/a-machine-for-your-collector.md",
     "docs/tutorials/a-machine-with-a-page.md",
+    "docs/tutorials/a-machine-with-seven-doors.md",
     "docs/tutorials/test-your-collector.md",
     "docs/tutorials/your-old-program.md",
     "docs/tutorials/your-sender.md",
     "docs/how-to/read-a-machine-with-your-agent.md",
+    "docs/how-to/run-a-fleet.md",
     "docs/how-to/add-a-g-code.md",
     "docs/how-to/add-a-cpl-function.md",
     "docs/how-to/add-a-library-function.md",

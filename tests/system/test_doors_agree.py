@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import random
+import re
 from collections.abc import Iterator
 from decimal import ROUND_HALF_UP, Decimal
+from pathlib import Path
 from typing import Any
 
 import pytest
@@ -15,8 +17,11 @@ pytest.importorskip("websockets", reason="pip install websockets")
 
 pytest.importorskip("asyncua", reason="pip install 'polycnc[opcua]'")
 
+from polycnc.servers.process import DOORS
+from polycnc.servers.setup import Flags, plan_of
 from support.all_doors import AllDoors
 from support.browser import browser
+from support.command import script
 from support.plant_doors import Page
 
 PROGRAM = (
@@ -332,3 +337,29 @@ def test_a_sender_at_a_fanuc_is_told_that_blocks_are_not_taken(doors: AllDoors) 
     assert lines[-1] == "ok"
     assert any("Blocks are not taken: programs are read in dialect" in line for line in lines)
     assert doors.rest() == before
+
+
+def test_what_the_tutorial_shows(doors: AllDoors, tmp_path: Path) -> None:
+    page = (Path(__file__).parents[2] / "docs/tutorials/a-machine-with-seven-doors.md").read_text("utf-8")
+    shown = dict(re.findall(r'```\w+ title="([^"]+)"\n(.*?)```', page, re.DOTALL))
+    (tmp_path / "O0012.nc").write_text(shown["O0012.nc"])
+    kinds = {"fanuc": "", "plain": None, "bosch": None, "apci": None, "imc": None}
+    plan = plan_of(Flags(None, kinds, doors="all", program=tmp_path / "O0012.nc"))
+    names = [row.name for row, _ in (*plan.machines[0].doors, *plan.shared)]
+    said = dict(line.split(": ", 1) for line in shown["says"].splitlines())
+    assert list(said) == names
+    assert {name: at.rpartition(":")[2] for name, at in said.items()} == {
+        row.name: str(row.port) for row in DOORS.values()
+    }
+    doors.sender.close()  # there is one sender at a time
+    doors._reader.close()
+    doors.clock(rate=1)
+    text = shown["ask_all.py"]
+    for name, at in said.items():
+        if name != "calls":
+            there = doors.said[f"{name}:"].partition(";")[0].rpartition(":")[2]
+            text = re.sub(rf"\b{at.rpartition(':')[2]}\b", there, text)
+    (tmp_path / "ask_all.py").write_text(text)
+    assert script(tmp_path / "ask_all.py", "", tmp_path).stdout == shown["prints"]
+    figures = doors.http.get(f"{doors.said['http:']}/metrics").text
+    assert 'polycnc_machine_lateness_seconds{machine="machine"}' in figures

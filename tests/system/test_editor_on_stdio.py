@@ -87,3 +87,25 @@ def test_a_word_tells_what_holds_before_its_line_and_how_long_that_takes(
     assert "Axis X, position in inch" in told(9, 4)
     assert "in 3 rounds" in told(12, 0)
     assert "Before this line" not in told(12, 0)  # the main program does not come to it
+
+
+def test_names_are_found_changed_and_numbered_by_the_editor(editor: Editor, tmp_path: Path) -> None:
+    uri, other = ((tmp_path / name).as_uri() for name in ("part.nc", "O0088.nc"))
+    (tmp_path / "O0088.nc").write_text("O88\nM99\n")
+    (tmp_path / "part.nc").write_text("")
+    editor.open(uri, "(\U0001f600)#101=3\nN7G1X#101F90\nIF[#101GT5]GOTO 7\nM98 P88\nM30\n")
+    [given] = editor.ask_at("textDocument/definition", uri, 1, 7)
+    assert given == {"uri": uri, "range": span(0, 4, 8)}
+    [beside] = editor.ask_at("textDocument/definition", uri, 3, 5)
+    assert (beside["uri"], beside["range"]["start"]["line"]) == (other, 0)
+    places = editor.ask_at("textDocument/references", uri, 2, 5, context={"includeDeclaration": False})
+    assert [each["range"] for each in places] == [span(1, 5, 9), span(2, 3, 7)]
+    assert editor.ask_at("textDocument/prepareRename", uri, 0, 5) == span(0, 4, 8)
+    edit = editor.ask_at("textDocument/rename", uri, 0, 5, newName="#150")
+    assert {each["newText"] for each in edit["changes"][uri]} == {"#150"}
+    assert len(edit["changes"][uri]) == 3
+    refused = editor.refused("textDocument/rename", uri, 0, 5, newName="#5001")
+    assert refused == "#5001 is in use already\nChoose another name."
+    options = {"tabSize": 4, "insertSpaces": True}
+    edits = editor.ask("textDocument/formatting", {"textDocument": {"uri": uri}, "options": options})
+    assert [each["newText"] for each in edits] == ["N10G1X#101F90", "IF[#101GT5]GOTO 10"]

@@ -60,18 +60,19 @@ def test_axes_of_a_line_stay_on_it_and_end_together() -> None:
 @pytest.mark.covers("apci.interp.formal")
 def test_axis_without_distance_takes_part_formally() -> None:
     rig = Rig()
+    rig.board.kernel.base[1] = -7.0  # it stands there
     mlr(rig.board, (0, 1), (10.0, 0.0), Speeds(500.0, 40.0, 40.0), spool=True)
     mlr(rig.board, (0, 1), (10.0, 20.0), FAST, spool=True)
     ssms(rig.board, (0, 1))
     rig.board.advance(scans_for(0.1))
     assert not rig.bits(1) & Axst.pe
-    assert rig.board.axes[1].dp == 0.0
+    assert rig.board.axes[1].dp == -7.0
     rig.scans_until_end()
-    assert places(rig) == [20.0, 20.0, 0.0]
+    assert places(rig) == [20.0, 13.0, 0.0]
     assert not rig.bits(1) & Axst.saf
     x, y = rig.setpoints(0), rig.setpoints(1)
-    assert y[x <= 10.0].max() == 0.0
-    assert y[x > 10.0] == pytest.approx(2.0 * (x[x > 10.0] - 10.0))
+    assert set(y[x <= 10.0]) == {-7.0}
+    assert y[x > 10.0] == pytest.approx(2.0 * (x[x > 10.0] - 10.0) - 7.0)
 
 
 @pytest.mark.covers("apci.interp.circular")

@@ -178,10 +178,13 @@ def test_a_stepper_is_not_referenced_any_more_when_its_loop_opens_or_closes(pc: 
 
 @pytest.mark.covers("apci.RPtoDP", "apci.rule.versions")
 def test_rptodp_takes_the_actual_position_as_setpoint_where_no_profile_runs() -> None:
-    for revision, expected in (("V2.5.3.100", 0.0), ("V2.5.3.99", 2.0)):
+    for revision, expected in (("V2.5.3.100", 12.0), ("V2.5.3.99", 14.0)):
         pc = Pc('[[axis]]\n[axis.plant]\nkind = "lag"\n', revision=revision)
+        pcap.wrrp(pcap.TSRP(an=0, rp=5.0))  # the machine zero is elsewhere, and the axis not at it
         axes = pc.close(0)
-        pcap.wrdp(pcap.TSRP(an=0, dp=2.0))
+        pcap.wrdp(pcap.TSRP(an=0, dp=12.0))
+        pc.run(2.0)
+        pcap.wrdp(pcap.TSRP(an=0, dp=14.0))
         record = pcap.TSRP(an=0)
         pc.board.kernel.servo.row[0]["kp"] = 0.0  # it cannot follow
         pc.board.advance(2)

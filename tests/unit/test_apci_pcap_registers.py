@@ -301,6 +301,7 @@ def test_the_target_is_that_of_the_last_travel_command_and_always_absolute(pc: P
 
 
 @pytest.mark.covers("apci.rdrp", "apci.rddp", "apci.rddv", "apci.rdrv", "apci.rdPosErr", "apci.TSRP.dv")
+@pytest.mark.covers("apci.profile.acceleration", "apci.profile.max_velocity", "apci.wrjac", "apci.wrjvl")
 @pytest.mark.covers("apci.TSRP.rp", "apci.TSRP.dp", "apci.var.dv", "apci.var.rv", "apci.var.PosErr")
 def test_positions_and_velocities_during_a_jog() -> None:
     pc = Pc(
@@ -404,9 +405,26 @@ def test_the_axis_status_by_word_and_by_bit(pc: Pc) -> None:
     assert (pcap.rdaxstb(0, 13), pcap.rdaxstb(0, 14)) == (0, 1)  # pe and cl: bits count from 1
     pcap.rdaxst(record)
     assert record.axst & Axst.pe == 0
+    other = pcap.TSRP(an=1)  # open, and at rest
+    pcap.rdaxst(other)
+    assert other.axst & (Axst.pe | Axst.cl) == Axst.pe
+    pcap.rdap(other)
+    assert other.axst & (Axst.pe | Axst.cl) == Axst.pe
     pc.scans_until_rest()
     assert (pcap.rdaxstb(0, 13), pcap.rdaxstb(1, 14)) == (1, 0)
     assert [pcap.rdaxstb(0, bit) for bit in (0, -1, 33)] == [0, 0, 0]
+    lmp = pcap.LMP(ac=100.0, vl=50.0, dtm=[5.0, *[0.0] * 17])  # queued moves have one end, that of the last
+    for _ in range(2):
+        pcap.smlr(axes, lmp)
+        pcap.ssf(0, 1003, 100)
+    pcap.smlr(axes, lmp)
+    pcap.ssms(axes)
+    seen = []
+    for _ in range(1200):
+        pc.board.advance(1)
+        seen.append(pcap.rdaxstb(0, 13))
+    assert seen == sorted(seen)
+    assert (seen[5], seen[-1], pc.rp(0)) == (0, 1, 25.0)
 
 
 @pytest.mark.covers("apci.rdlsm", "apci.rdMCiS", "apci.TSRP.lsm", "apci.const.spoolmem")

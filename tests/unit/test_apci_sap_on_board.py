@@ -164,6 +164,7 @@ def uncompiled(function: Any) -> Any:
 
 
 @pytest.mark.covers("apci.axst.0", "apci.axst.10", "apci.axst.11", "apci.axst.20-31")
+@pytest.mark.covers("sap.axis.digi", *(f"apci.digi.{bit}" for bit in range(16, 20)))
 def test_a_program_reads_the_status_and_signals_that_the_pc_reads() -> None:
     axis = Sap()
     own, state = axis.board.axes[1], axis.board.state

@@ -83,7 +83,7 @@ def picture(board: Board, tasks: BoardTasks) -> tuple[object, ...]:
     seen: list[object] = [array.tobytes() for array in arrays]
     for number, task in enumerate(tasks.tasks.each):
         seen.append(tasks.tasks.rdcncts(number))
-        task.come_home()
+        task.reclaim_state()
         seen.append((task.next, task.base, repr(task.stack), repr(task.memory), task.frames, task.waiting))
     return tuple(seen)
 

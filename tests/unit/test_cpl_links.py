@@ -60,6 +60,18 @@ def test_linking_leaves_tables_and_uses_them_until_a_program_changes(root: Root)
     assert [name for name in before if after[name] != before[name]] == ["SUB.l"]
 
 
+@pytest.mark.covers("cpl.param.3080_00004")
+def test_tables_lie_in_the_folder_that_the_parameter_names(root: Root) -> None:
+    root.write("macoda.dat", b'3080 00004 = "/made/of/it"\n')
+    (root.folder / "made" / "of" / "it").mkdir(parents=True)
+    assert ran(root)[0]["#C%"] == 23
+    names = [f"made/of/it/{name}.l" for name in ("DEEP", "SUB", "main.npg")]
+    assert tables(root) == names
+    before = made_at(root)
+    assert ran(root)[1:] == ([], [])
+    assert made_at(root) == before
+
+
 @pytest.mark.covers("cpl.link")
 def test_a_sub_program_with_a_table_is_not_linked_again(root: Root) -> None:
     wrong = "1 #B%=\n"

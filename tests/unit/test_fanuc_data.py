@@ -197,6 +197,8 @@ def test_parameters_that_have_one_value(kind: str) -> None:
     code, data = fwlib.cnc_rdparam(handle, number, 0, 4 + size)
     assert (code, getattr(data.u, name)) == (OK, value)
     assert data.pack()[4 + size :] == b"\0" * (24 - size)
+    as_record = record(number, int(attribute), 0, value)
+    assert fwlib.cnc_rdparar(handle, number, 0, number, 20) == (OK, number, number, len(as_record), as_record)
     assert fwlib.cnc_rdparam(handle, number, 0, 3 + size)[0] == EW.EW_LENGTH
     for axis in (1, 3, ALL_AXES):
         assert fwlib.cnc_rdparam(handle, number, axis, 28)[0] == EW.EW_ATTRIB
@@ -216,6 +218,16 @@ def test_parameters_of_axes(kind: str) -> None:
     assert fwlib.cnc_wrparam(handle, 4 + 3 * size, psd(number, ALL_AXES, **{f"{name}s": values})) == OK
     assert parameter(handle, number, ALL_AXES) == [*values, 0, 0, 0]
     assert [parameter(handle, number, axis) for axis in (1, 2, 3, 4, 6)] == [*values, 0, 0]
+    as_records = record(number, list(AXIS_TYPES).index(kind), 0xFF, *values, 0, 0, 0)
+    assert fwlib.cnc_rdparar(handle, number, ALL_AXES, number, 100) == (
+        OK,
+        number,
+        number,
+        len(as_records),
+        as_records,
+    )
+    assert fwlib.cnc_wrparas(handle, len(as_records), as_records) == OK
+    assert parameter(handle, number, ALL_AXES) == [*values, 0, 0, 0]
     assert fwlib.cnc_wrparam(handle, 4 + size, psd(number, 2, **{name: 3})) == OK
     assert parameter(handle, number, ALL_AXES)[:3] == [values[0], 3, values[2]]
     assert fwlib.cnc_rdparam(handle, number, 2, 4 + size)[0] == OK

@@ -411,7 +411,7 @@ MATRIX: list[tuple[Callable[[PowerMate, int], None], dict[str, EW]]] = [
 @covers(
     "cnc_dwnstart.err.EW_BUSY", "cnc_dwnstart.err.EW_PROT", "cnc_search.err.EW_BUSY", "cnc_delall.err.EW_BUSY",
     "cnc_delete.err.EW_BUSY", "concept.program_busy_conditions", "concept.alarm_ps000_ps101", "concept.op_signal",
-    "concept.protect_key", "concept.background_edit", "concept.compare_running", "EW_BUSY",
+    "concept.protect_key", "concept.background_edit", "concept.compare_running", "EW_BUSY", "mode.MEM",
 )  # fmt: skip
 @pytest.mark.parametrize("call", CALLS)
 @pytest.mark.parametrize(("state", "answers"), [pytest.param(*each, id=each[0].__name__) for each in MATRIX])

@@ -72,6 +72,11 @@ def test_a_diagnosis_value_of_each_kind(
     assert getattr(diag.u, member) == value
     assert bytes(diag)[4 + size :] == bytes(28 - 4 - size)
     assert library.cnc_diagnoss(handle, number, axis, length - 1)[0] is EW.EW_LENGTH
+    if axis:  # in a range each of six axes has its place
+        code, _, _, used, data = library.cnc_diagnosr(handle, number, -1, number, 100)
+        assert (code, used) == (0, 4 + 6 * size)
+        place = 4 + (axis - 1) * size
+        assert int.from_bytes(data[place : place + size], "little", signed=True) == value
 
 
 @pytest.mark.covers("fanuc.cnc_diagnoss")

@@ -89,7 +89,7 @@ CODES = [
         for row in CODES
     ],
 )
-@pytest.mark.covers("fanuc.ODBMDL.g_data")
+@pytest.mark.covers("fanuc.ODBMDL.g_data", "fanuc.ODBMDL.g_rdata", "fanuc.cnc_modal.type.-1")
 def test_a_code_has_its_number_and_stays_in_force(group: int, value: int, text: str, words: str) -> None:
     extra = "G1 X3. Y7. Z9. F800" if group else "X3. Y7. R50."
     library, handle, _ = executing(f"{text}\n{extra}", words)

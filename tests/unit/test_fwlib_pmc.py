@@ -190,6 +190,10 @@ def test_reading_is_refused(kind: int, data_type: int, first: int, last: int, le
         pytest.param(
             (D, 1, 100, 101), 9, "EW_LENGTH", marks=pytest.mark.covers("fanuc.pmc_wrpmcrng.err.EW_LENGTH")
         ),
+        *(
+            pytest.param(*each, "EW_LENGTH", marks=pytest.mark.covers("fanuc.pmc_wrpmcrng.err.EW_LENGTH"))
+            for each in (((D, 1, 100, 102), 11), ((D, 2, 100, 101), 10), ((D, 2, 100, 105), 14))
+        ),  # no whole words
         ((D, 1, 100, 101), 2000, "EW_LENGTH"),
         ((D, 1, 100, 101), 4, "EW_LENGTH"),
         pytest.param(

@@ -285,6 +285,7 @@ def test_a_program_that_goes_out_shows_as_output() -> None:
 
 
 @pytest.mark.covers(
+    "fanuc.ODBST.edit",
     "fanuc.ODBST.edit.0",
     "fanuc.ODBST.edit.1",
     "fanuc.ODBST.edit.4",

@@ -64,7 +64,7 @@ def test_a_free_gear_ramps_to_ratio_times_the_source_and_follows_a_new_ratio() -
     assert card.read("mcsvel", 1) == -card.read("mcsvel", 0)
 
 
-@pytest.mark.covers("imc.param.gearratio")
+@pytest.mark.covers("imc.param.gearratio", "imc.concept.gear_law")
 def test_a_ratio_is_exact_over_any_time() -> None:
     card = ready_card()
     gear(card, 0)

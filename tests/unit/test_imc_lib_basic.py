@@ -41,6 +41,25 @@ def test_width_of_a_write_decides_which_words_change(program: Program) -> None:
     assert (program.get("user32b0"), program.get("user32b1")) == (0x20001, 3)
 
 
+@pytest.mark.covers(
+    "imc.type.S16", "imc.type.S32", "imc.type.S16.16", "imc.type.S16.32", "imc.type.F16", "imc.type.R16"
+)
+@pytest.mark.covers("imc.type.IMC16", "imc.type.IMC32")
+@pytest.mark.covers("imc.IMC_GetParam16", "imc.IMC_GetParam32", "imc.IMC_GetParam48")
+@pytest.mark.parametrize(
+    ("name", "raw"),
+    [
+        ("user16b4", -12_345), ("mcstgpos", -123_456_789), ("gearoutvel", -70_001), ("gearratio", -(1 << 40) - 5),
+        ("user48b2", 1 << 46), ("stopfilt", -2), ("mcstrack", -1), ("user32b7", 2_000_000_000),
+    ],
+)  # fmt: skip
+def test_a_number_is_written_and_read_with_its_sign(program: Program, name: str, raw: int) -> None:
+    axis = 3 if name in ("mcstgpos", "gearoutvel", "gearratio", "stopfilt", "mcstrack") else 0
+    program.set(name, raw, axis)
+    program.run(1)
+    assert program.get(name, axis) == raw
+
+
 def test_two_flags_beside_each_other_are_both_set_by_a_wide_write(program: Program) -> None:
     program.set("homepos", 4321)
     program.ok(lib.IMC_SetParam32, lib.gohomeLoc, -1, 0, IF)  # sethome is the next word

@@ -168,9 +168,10 @@ def test_the_number_of_events_is_a_small_unsigned_number() -> None:
     assert count.type is not None
     assert (count.c, ctypes.sizeof(count.type.ctype), count.take(31, None)) == ("IMCU16", 2, 31)
     assert count.type.ctype(-1).value == 65535
-    with pytest.raises(Refused) as refused:
-        count.take(65535, None)
-    assert refused.value.code is imclib.IMC_OUT_OF_RANGE
+    for number in (65535, 32, 0, -1):
+        with pytest.raises(Refused) as refused:
+            count.take(number, None)
+        assert refused.value.code is imclib.IMC_OUT_OF_RANGE
 
 
 def test_everything_listed_is_there() -> None:

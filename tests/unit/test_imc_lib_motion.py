@@ -261,6 +261,11 @@ def test_position_over_time(program: Program) -> None:
     program.run(12)
     assert (program.get("curpos", 1), program.get("mcsvel", 1)) == (5000, 0)
     assert (program.get("startsyn", 1), program.get("enasyn", 1)) == (0, 0)
+    program.card.write("slaveabs", -1, axis=1)  # left over: it is a distance all the same
+    program.ok(lib.IMC_MoveInTime, 300, -700, 1, IF)
+    program.set("startsyn", -1, 1)
+    program.run(305)
+    assert program.get("curpos", 1) == 4300
 
 
 @pytest.mark.covers("imc.IMC_MovePP", "imc.concept.startsyn")

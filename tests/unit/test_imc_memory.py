@@ -111,6 +111,14 @@ def test_a_type_has_its_width_and_range(name: str, low: float, high: float) -> N
     for value in (low, high, 0):
         card.write(name, value)
         assert card.read(name) == pytest.approx(value, abs=1e-12)
+    if each.type[0] in "SU":  # in a card file too
+        values, step = f"parameters = {{ {name} = %r }}\n", 1 if each.fraction_bits == 0 else 1.0
+        text = values if each.scope == "G" else "[[axis]]\n" + values
+        assert parse_card(text % low)
+        assert parse_card(text % high)
+        for beyond in (high + step, *([low - step] if low < 0 else [])):
+            with pytest.raises(ConfigurationError, match="does not fit"):
+                parse_card(text % beyond)
     raw = 1 << (16 * each.words)
     assert each.to_raw(high) == raw // (2 if low < 0 else 1) - 1 or each.type in ("F16", "R16")
 
@@ -293,10 +301,10 @@ def test_each_free_cell_keeps_what_is_written_and_no_other_changes(width: int, c
 def test_settings_of_an_axis_that_the_simulation_does_not_use_are_kept_for_each_axis(name: str) -> None:
     card = ready_card()
     for i in range(4):
-        send(card, IFIFO, (name, i + 0.5 if name == "fixvel" else 100 + i, i))
+        send(card, IFIFO, (name, 1.375 * i - 2.5 if name == "fixvel" else 100 + i, i))
     card.advance(1)
     assert [card.read(name, i) for i in range(4)] == [
-        i + 0.5 if name == "fixvel" else 100 + i for i in range(4)
+        1.375 * i - 2.5 if name == "fixvel" else 100 + i for i in range(4)
     ]
     assert card.read("moving") == 0
 

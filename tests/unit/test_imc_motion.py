@@ -235,6 +235,7 @@ def test_smoothing_is_the_mean_of_the_last_increments_and_loses_nothing(span: in
     assert (smooth.read("curpos"), smooth.read("moving"), smooth.read("smoothing")) == (1234, 0, 0)
 
 
+@pytest.mark.covers("imc.param.profiling", "imc.param.smoothing", "imc.param.moving", "imc.param.mcsmoving")
 def test_moving_lasts_as_long_as_smoothing_does() -> None:
     card = ready_card()
     set_now(card, ("smooth", 32))
@@ -428,6 +429,8 @@ def test_feedback_can_follow_the_command() -> None:
     assert (card.read("encp"), card.read("poserr"), card.kernel.servo.actual[0]) == (100, 0, 0)
 
 
+@pytest.mark.covers("imc.param.profiling", "imc.param.moving", "imc.param.mcsmoving", "imc.param.pcsmoving")
+@pytest.mark.covers("imc.param.motion")
 @pytest.mark.parametrize("name", ["mcsgo", "pcsgo", "mcstgvel", "pcstgvel"])
 def test_an_axis_that_has_just_been_told_to_move_shows_it_before_the_next_cycle(name: str) -> None:
     card = ready_card()

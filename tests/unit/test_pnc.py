@@ -147,8 +147,10 @@ def test_physical_axes_are_read_from_everywhere(example: Example) -> None:
     example.run("N1 G0 A33.5", channel=3)
     example.run("N1 G0 X2=4.5 Y2=-6", channel=2)
     example.run("N1 G0 X2")
-    found = example.run('10 WAIT\n30 #A=APOS(4) : #B=APOS("A") : #C=APOS(8) : #D=SPOS(1) : #E=SPOS("Y2")')
-    assert [found[f"#{name}"] for name in "ABCDE"] == [4.5, 33.5, 33.5, 2, -6]
+    found = example.run(
+        '10 WAIT\n30 #A=APOS(4) : #B=APOS("A") : #C=APOS(8) : #D=SPOS(1) : #E=SPOS("Y2") : #F=SPOS(4)'
+    )
+    assert [found[f"#{name}"] for name in "ABCDEF"] == [4.5, 33.5, 33.5, 2, -6, 4.5]
     assert example.refuses("APOS(7)") == "1938"
     assert example.refuses('SPOS("U")') == "1938"
 

@@ -73,6 +73,18 @@ def lagging(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Living]:
     made.pnc.close()
 
 
+@pytest.mark.covers("cpl.SPOS", "cpl.APOS", "cpl.MPOS", "cpl.WPOS", "cpl.ex.1712", "cpl.ex.1683")
+def test_programs_read_setpoints_by_spos_and_actual_values_by_apos(lagging: Living) -> None:
+    x, z = lagging.pnc.axes["X"], lagging.pnc.axes["Z"]
+    c, x2 = lagging.pnc.axes["C"], lagging.pnc.axes["X2"]
+    functions = lagging.pnc.system.functions(1)
+    for name, axis in ((1, x), ("X", x), (2, z), ("Z", z), (4, c), ("C", c), (5, x2), ("X2", x2)):
+        assert functions["SPOS"](name) == pytest.approx(axis.setpoint)
+        assert functions["APOS"](name) == pytest.approx(axis.actual)
+    assert functions["MPOS"](2) == functions["SPOS"]("Z")
+    assert functions["WPOS"](1) == pytest.approx(x.setpoint - 5.5)
+
+
 @pytest.mark.covers("cpl.MCODS.4", "cpl.MCODS.35", "cpl.MCODS.38", "cpl.MCODS.75", "cpl.MCODS.72")
 def test_setpoints_actual_values_and_lag_are_told_apart(lagging: Living) -> None:
     x, z = lagging.pnc.axes["X"], lagging.pnc.axes["Z"]

@@ -215,6 +215,7 @@ HOW = {1: "auto", 2: "single", 3: "manual"}
 WHERE = {1: "start", 3: "break"}
 
 
+@pytest.mark.covers("cpl.MCOPS")
 @pytest.mark.covers("cpl.MCOPS.8", "cpl.MCODS.46.rec.off")
 @pytest.mark.parametrize(
     ("how", "where"),

@@ -124,6 +124,16 @@ def test_data_of_a_control_in_motion(middle: Living, case: Case) -> None:
     assert found == (expected if isinstance(expected, str) else pytest.approx(expected, abs=1e-4))
 
 
+@pytest.mark.covers("cpl.MCODS.47", "cpl.MCODS.47.val.0", "cpl.MCODS.47.val.1")
+def test_an_axis_travels_whichever_way_it_goes(fresh: Living) -> None:
+    fresh.start("N1 G1 F6000 X-60 C-30\nM30\n", 300)
+    assert (fresh.pnc.axes["X"].velocity < 0.0, fresh.read(47, 1, 3)) == (True, [1, 0, 1])
+    assert fresh.read(3, 1, 3)[:2] == pytest.approx([6000.0, 6000.0])  # a feed has no sign
+    fresh.until_over()
+    fresh.pnc.advance(20)
+    assert fresh.read(47, 1, 3) == [0, 0, 0]
+
+
 @pytest.mark.covers(
     "cpl.MCODS.2", "cpl.MCODS.62", "cpl.MCODS.62.val.-2147483648", "cpl.MCODS.83", "cpl.MCODS.76"
 )
@@ -197,6 +207,7 @@ def mode(which: Mode) -> Callable[[Living], object]:
 CHANGES = [
     Change(7, 1, 1, [10000.0], lambda six: six.pnc.control.set_overrides(feed=0.825, channel=0), [8250.0]),
     Change(8, -1, 1, [10000.0], lambda six: six.pnc.control.set_overrides(spindle=0.9), [9000.0]),
+    Change(9, 1, 1, [-1], run("N1 H3\nN2 G1 X9 F60\n"), [3]),
     Change(11, 1, 1, [-1], run("N1 G18 G41 D3 G1 X5 F60000\nN2 X9 F60\n"), [3], ("11.val.-1",)),
     Change(12, 1, 1, [0.0], run("N1 G18 G41 D3 G1 X5 F60000\nN2 X9 F60\n"), [6.25]),
     Change(18, 1, 1, [1], run("N1 G70\nN2 G1 X9 F60\n"), [0], ("18.val.0",)),
@@ -215,9 +226,9 @@ CHANGES = [
     Change(87, 1, 1, [0], run("N1 G1 X1 F60000\nN2 M0\nN3 X2\n", 500), [16], ("87.bit.4",)),
     Change(87, 1, 1, [0], lambda six: six.pnc.control.set_overrides(feed=0.0, channel=0), [8], ("87.bit.3",)),
     Change(87, 1, 1, [0], run("1 WAIT(,5000)\n", 5), [4096], ("87.bit.12",)),
-    *(Change(31, 1, 1, [5], mode(which), [int(which)], (f"31.val.{int(which)}",))
-      for which in (Mode.JOG, Mode.REFERENCE, Mode.MDI, Mode.PROGRAM_BLOCK, Mode.SINGLE_STEP, Mode.SINGLE_BLOCK,
-                    Mode.DEBUG_BLOCK, Mode.DEBUG_AUTOMATIC)),
+    *(Change(31, 1, 1, [5], mode(which), [number], (f"31.val.{number}",))
+      for number, which in {1: Mode.JOG, 2: Mode.REFERENCE, 4: Mode.MDI, 6: Mode.PROGRAM_BLOCK, 7: Mode.SINGLE_STEP,
+                            10: Mode.SINGLE_BLOCK, 12: Mode.DEBUG_BLOCK, 13: Mode.DEBUG_AUTOMATIC}.items()),
     Change(48, 1, 1, [5], mode(Mode.JOG), [1]),
 ]  # fmt: skip
 

@@ -75,6 +75,7 @@ def again(tmp_path: Path) -> Iterator[Two]:
 # ---------------------------------------------------------------------- search, select
 
 
+@pytest.mark.covers("cpl.MCOPS")
 @pytest.mark.covers("cpl.MCOPS.3", "cpl.MCOPS.4", "cpl.ncs.0", "cpl.ncs.14", "cpl.MCODS.32.sav.2")
 @pytest.mark.parametrize(
     ("name", "start", "end", "code", "x2", "seen"),
@@ -133,6 +134,7 @@ def test_a_missing_program_is_refused_with_code_2_and_else_an_error_of_its_chann
     assert two.x2() == 40
 
 
+@pytest.mark.covers("cpl.MCOPS")
 @pytest.mark.covers("cpl.ncs.11", "cpl.MCOPS.4.code.64", "cpl.MCOPS.4.code.2048", "cpl.ncs.9")
 def test_an_active_program_is_left_before_another_one(two: Two) -> None:
     two.pnc.select_program("LONG", channel=2)
@@ -245,6 +247,7 @@ def test_two_programs_cannot_write_into_a_buffer_in_one_cycle(tmp_path: Path) ->
 # ---------------------------------------------------------------------- resets, of the own channel too
 
 
+@pytest.mark.covers("cpl.MCOPS")
 @pytest.mark.covers("cpl.MCOPS.2", "cpl.MCODS.32.sav.8", "cpl.ncs.3")
 def test_a_control_reset_stops_another_channel_and_takes_no_orders_meanwhile(two: Two) -> None:
     two.pnc.select_program("LONG", channel=2)
@@ -286,6 +289,7 @@ def test_a_program_that_leaves_itself_hands_over_to_the_next(two: Two) -> None:
     assert two.pnc.variables(1)["#N%"] == 7
 
 
+@pytest.mark.covers("cpl.MCOPS", "cpl.ex.3209")
 @pytest.mark.covers(
     "cpl.MCOPS.2.type.2", "cpl.MCOPS.5.type.2", "cpl.MCODS.70", "cpl.MCODS.70.val.1", "cpl.MCODS.refresh.I"
 )
@@ -301,6 +305,7 @@ def test_a_program_is_selected_again_unless_that_is_suppressed(again: Two, servi
     assert [again.pnc.variables(1)[name] for name in ("#E%", "#F%", "#B%")] == [0, 0, 1]
 
 
+@pytest.mark.covers("cpl.MCOPS")
 @pytest.mark.covers("cpl.ncs.13", "cpl.sig.NC-I_3.0")
 def test_starts_and_modes_have_their_conditions(two: Two) -> None:
     two.pnc.select_program("PART", channel=2)

@@ -85,6 +85,11 @@ def test_shifts_of_the_program_lie_between_program_and_workpiece_coordinates(cel
     assert found == [2, 13.5, 13.5, -2, 11.5, 5, 1.5, 12]
     assert cell.values("N1 G168 X10\nN2 G268 X4\nN3 G269\nN4 G1 X1 F900\n5 WAIT", "MPOS(1)") == [11]
     assert cell.values("N1 G168 X10\nN2 G268 X4\nN3 G169\nN4 G1 X1 F900\n5 WAIT", "MPOS(1)") == [1]
+    # G92 lies nearest to the program: where X shows 5 it shows -3 from then on.
+    found = cell.values(
+        "N1 G168 X10\nN2 G1 X5 F900\nN3 G92 X-3\nN4 G1 X4\n5 WAIT", "AXO(1)", "CPOS(1)", "WPOS(1)"
+    )
+    assert found == [8, 4, 22]
 
 
 @pytest.mark.covers("cpl.nc.G60_G67")
@@ -269,6 +274,7 @@ def test_active_functions_feeds_and_positions_are_read(cell: Cell) -> None:
         "202.s", "205.1.s", "205.2.s", "205.3.s", "212.1.s", "212.2.s",
     )),
     *(f"cpl.SDR.{row}" for row in ("68.1.n", "68.2.n", "168.1.n", "168.2.n", "268.1.n", "268.2.n", "202.s")),
+    "cpl.ex.2298",
 )  # fmt: skip
 def test_what_is_programmed_and_what_is_active_are_told_apart(cell: Cell) -> None:
     (cell.folder / "macoda.dat").write_text("6010 00010 = 33\n")

@@ -71,6 +71,8 @@ FUNCTIONS = [
     ("DABS(7.25)", 7.25),
     ("DMS(-12.5)", -12.3),
     ("DMS(400.01)", 400.0036),
+    ("DMS(7.0001)", 7.0000360),
+    ("ADMS(7.00305)", 7.00847222222),
     ("ADMS(-12.3)", -12.5),
     ("ADMS(400.0036)", 400.01),
 ]
@@ -105,6 +107,7 @@ def test_arithmetic_has_the_usual_precedence() -> None:
     assert _value("2*-3--1") == -5.0
     assert _value(".5 + 1. + 0.25") == 1.75
     assert _value("10-3-4.5") == 2.5  # from the left
+    assert _value("+2.5-+1*(+3)") == -0.5
     assert _value("7-10*0.125-(2-5)/4") == 6.5
     assert _value("12.0625") == 12.0625
     assert _value("-2.5*-V1 - -V1", "<V1=3.5>") == 12.25
@@ -114,6 +117,14 @@ def test_arithmetic_has_the_usual_precedence() -> None:
 def test_an_assignment_gives_a_new_value_made_of_the_old_one() -> None:
     assert _value("V1", "<V1=100+1>\n<V1=-V1*2+W>\n<W=V1-1>\n<V1=V1-W*2>") == 204.0
     assert _value("V2-V1", "<V2=3>\n<V1=V2>\n<V2=0>\n<V3=5>") == -3.0
+
+
+@pytest.mark.covers("post.op.assign", "post.expr.newvar", "post.expr.case")
+def test_names_of_any_length_are_told_apart_but_not_by_their_case() -> None:
+    names = ("DEPTH", "DEPTH1", "DEPTH_1", "DE", "D", "A1234567890B", "A1234567890C")
+    macro = "\n".join(f"<{name.lower()}={place}.5>" for place, name in enumerate(names, 1))
+    for place, name in enumerate(names, 1):
+        assert _value(name, macro) == _value(name.title(), macro) == place + 0.5
 
 
 @pytest.mark.covers(
@@ -168,8 +179,9 @@ def test_conditions_take_words_constants_and_arithmetic() -> None:
 @pytest.mark.covers("post.if.statement", "post.if.else_if")
 def test_only_the_first_branch_that_holds_runs() -> None:
     macro = "IF(V1==1)\nA\nELSE IF(V1==2)\nB\nELSE IF(V1<=3)\nC\nELSE\nD\nENDIF"
-    written = [blocks_of(f"<V1={value}>\n{macro}") for value in (1, 2, 3, 4)]
-    assert written == [["A"], ["B"], ["C"], ["D"]]
+    for each in (macro, macro.replace("ELSE IF", "ELSEIF"), macro.lower().replace("else if", "else \t if")):
+        written = [blocks_of(f"<V1={value}>\n{each}") for value in (1, 2, 3, 4)]
+        assert [block for [block] in written] == list("ABCD" if each.isupper() else "abcd")
 
 
 @pytest.mark.covers("post.if.nesting")
@@ -214,6 +226,8 @@ def test_all_kinds_of_elements_in_one_macro() -> None:
     macro = "IF(T==3)\n@1@(TOOL )!M06!$TOOLCHANGE$<S=50*2>\"<>\"'/,-200'$S$\n@0@&S&$S$\nENDIF"
     words: dict[str, float | str] = {"TOOLCHANGE": "T03", "T": 3.0}
     assert blocks_of(macro, words=words, sequence_place=2) == ["N10(TOOL )M06T03<>/S100", "S100"]
+    off = [each.removeprefix("N10") for each in blocks_of(macro, words=words, sequence_place=2)]
+    assert blocks_of(macro, words=words, sequence_place=0) == off  # not where nothing is numbered
     more = f"{macro}\nEND"  # where every block is numbered, that of @0@ is not, and does not count
     assert blocks_of(more, words=words, sequence_place=1) == ["N10(TOOL )M06T03<>/S100", "S100", "N20END"]
 
@@ -227,6 +241,9 @@ def test_text_without_an_order_has_order_0() -> None:
 def test_texts_around_lines_keep_their_blanks_and_marks_until_others_come() -> None:
     macro = '<STARTOFLINE=" /!$@&< ">A\n<ENDOFLINE=" {;}  ">B\n<STARTOFLINE="">C'
     assert blocks_of(macro) == [" /!$@&< A", " /!$@&< B {;}  ", "C {;}  "]
+    for name in ("V1", "X", "COMMENT", "OUTPUTORDER"):
+        assert _error(f'<{name}="5">').what.endswith(f"{name} does not take a text")
+    assert "takes a text in double quotes" in _error("<STARTOFLINE=5>").what
 
 
 @pytest.mark.covers("post.string.literal", "post.string.special_chars", "post.string.dquote")
@@ -320,6 +337,8 @@ def test_reserved_words_expand_to_texts_and_numbers() -> None:
     assert blocks_of(macro, words={"PARTNAME": "A & B", "PATHNUMBER": 2, "DWELL": 0.25}) == [
         "(A & B 2 0.25)T00"
     ]
+    words = {"PARTNAME": "  A  ", "PATHNUMBER": -2, "DWELL": -0.125}
+    assert blocks_of(macro, words=words) == ["(  A   -2 -0.125)T00"]
     assert blocks_of("$TOOLCHANGE$", words={"T": 7}) == ["T07"]  # a system that gives no text
     assert blocks_of("$TOOLCHANGE$", words={"T": 7, "TOOLCHANGE": "T7"}) == ["T7"]
     assert blocks_of("$OUTPUTORDER$<OUTPUTORDER=1>") == ["0"]
@@ -361,6 +380,10 @@ def test_sequence_numbers_step_and_begin_again() -> None:
 @pytest.mark.covers("post.block.empty")
 def test_lines_of_blanks_and_of_empty_texts_are_no_blocks() -> None:
     assert blocks_of('\n  \n""\n&X&\n@1@\n\',5\'\n"  "', sequence_place=1) == ["N10  "]
+    assert blocks_of(" <V1=2> \t&X&  @1@ <V2=V1>\t\n A <V1=3> \nB \t", sequence_place=1) == [
+        "N10 A ",
+        "N20B \t",
+    ]
 
 
 @pytest.mark.covers("post.order.sort", "post.word.OUTPUTORDER", "post.string.squote", "post.order.written")
@@ -369,6 +392,8 @@ def test_order_of_all_kinds_of_elements() -> None:
     words: dict[str, float | str] = {"X": 1.0, "F": 2.0, "COMMENT": "C"}
     expected = ["AN10(C)G00G90X1.000BF2M06Z"]
     assert blocks_of(macro, words=words, sequence_place=2) == expected
+    # The sequence number has its place among the others, and is the first of its own order.
+    assert blocks_of("<OUTPUTORDER=1>@1@'P,-100''Q,-101''R,-99'", sequence_place=2) == ["QN10PR"]
     assert blocks_of(macro.replace("=1", "=2"), words=words, sequence_place=2) == [
         "N10ZF2M06G90AX1.000G00B(C)"
     ]

@@ -96,7 +96,7 @@ REFUSED = [
     ("o1 sub\no1 call\no1 endsub\no1 call", "nested more than 10 deep", 2),
     ("G0 X[1", "']' is missing", 1),
     ("o1 while [1]\no1 endwhile", "without a block", 1),
-    ("G0 X#<_ini[a]b>", "no INI file", 1),
+    ("G0 X#<_ini[a]b>", "is not there", 1),
     ("#1=1\nG1 X[#1] Q5x", "a number is missing", 2),
     ("G0 X1\nM98 P70", "no sub-program O70 that ends with M99", 2),
     ("G0 X1\nM98 P70\nM2\nO70\nG0 X2", "no sub-program O70 that ends with M99", 2),

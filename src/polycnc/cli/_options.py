@@ -101,6 +101,13 @@ Resolution = Annotated[
 SaveStock = Annotated[
     Path | None, typer.Option(help="Write what is left of the stock to an .stl file.", metavar="FILE")
 ]
+SaveParameters = Annotated[
+    Path | None,
+    typer.Option(
+        help="Write the parameters of LinuxCNC that outlive the program to a .var file, at its end.",
+        metavar="FILE",
+    ),
+]
 LoopLimit = Annotated[
     float | None,
     typer.Option(

@@ -29,6 +29,7 @@ class _Outputs:
     plot: Path | None
     screen: Path | None
     stock: Path | None
+    parameters: Path | None
 
     def check(self, programs: Sequence[Path], inputs: Iterable[str | Path | None]) -> None:
         """Refuse files of several programs, and those that are read or written twice."""
@@ -39,6 +40,7 @@ class _Outputs:
             ("a plot", self.plot),
             ("a screen", self.screen),
             ("stock", self.stock),
+            ("a file of parameters", self.parameters),
         )
         read = tuple(inputs)
         for what, output in outputs:
@@ -49,7 +51,7 @@ class _Outputs:
 
     def say(self) -> None:
         """Say what has been written."""
-        for path in (self.trace, self.plot, self.screen, self.stock):
+        for path in (self.trace, self.plot, self.screen, self.stock, self.parameters):
             if path is not None:
                 say(f"wrote      {path}")
 
@@ -73,6 +75,7 @@ def run_command(
     stock: options.Stock = None,
     resolution: options.Resolution = None,
     save_stock: options.SaveStock = None,
+    save_parameters: options.SaveParameters = None,
 ) -> None:
     """Run part programs on a simulated machine and say how long they take and where they go."""
     from polycnc import runner
@@ -80,7 +83,7 @@ def run_command(
 
     if save_stock is not None:
         check_stock_file(save_stock, stock)
-    outputs = _Outputs(trace, plot, screen, save_stock)
+    outputs = _Outputs(trace, plot, screen, save_stock, save_parameters)
     outputs.check(programs, (*programs, machine, dialect, keys, stock if stock != "auto" else None))
     texts = [read_program(program) for program in programs]
     config = load_machine(machine)
@@ -99,6 +102,7 @@ def run_command(
         loop_limit_s=runner.LOOP_LIMIT_S if loop_limit is None else loop_limit,
         stock=stock,
         resolution_mm=resolution,
+        save_parameters=save_parameters,
     )
     results = []
     for text in texts:

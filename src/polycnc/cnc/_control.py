@@ -42,7 +42,7 @@ class Control:
     `script` tells how the PLC answers auxiliary functions. `servo` simulates the position loops of the machine file.
     `languages` are those of the channels' programs, one for each channel; without any, the language of the dialect.
 
-    Commands raise `ControlError` where the control refuses them; what each refuses is told where it is carried out:
+    Commands raise `ControlError` where the control refuses them; what each refuses is said where it is carried out:
     `Settings`, `ProgramCommands`, `ManualCommands`.
     """
 

@@ -45,7 +45,7 @@ def make_parts(
     library: Library,
     on_event: Callable[[int, Event], bool],
 ) -> ControlParts:
-    """Return the parts of a control on a machine; `library` finds sub-programs, `on_event` is told each function
+    """Return the parts of a control on a machine; `library` finds sub-programs, `on_event` gets each function
     with the number of its channel.
 
     `are_given` tells that somebody has shared the axes out: an alarm of an axis is that of its channel then.

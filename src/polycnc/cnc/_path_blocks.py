@@ -19,7 +19,7 @@ def next_block(machine: Machine, run: ProgramRun) -> BlockRecord | None:
     """Return the block that comes next where a path stands between two blocks; None where none is known."""
     if machine.state.paths.row[run.path]["state"] != READY:
         return None
-    tag = run.feed.next_tag()
+    tag = run.feed.blocks.next_tag()
     return None if tag is None else run.channel.records.block(tag)
 
 

@@ -9,12 +9,11 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
+from polycnc.cnc._queued_blocks import PIECE, QueuedBlocks
 from polycnc.cnc._stops import Stopper, boundaries
 from polycnc.kernel import (
-    HELD,
     NO_LIMIT,
     READY,
-    RUNNING,
     earliest_limit,
     free_slots,
     measure_queue,
@@ -28,7 +27,6 @@ Floats = npt.NDArray[np.float64]
 
 _LOW_WATER = 1024  # final segments that stay queued: more than one cycle can pass
 _NEVER = -1
-_PIECE = 256  # segments looked at together for the end of a block
 
 
 class FeedSnapshot(NamedTuple):
@@ -68,6 +66,7 @@ class PathFeed:
         self._releases = False  # the stop ahead is wanted no more, if nobody wants it before time passes
         state = machine.state
         self.row = state.paths.row[channel.path]
+        self.blocks = QueuedBlocks(self.row, state.seg.row["tag"], lambda: self.channel.writer.marks)
         self._low_water = _LOW_WATER + int(self.row["depth"])
         self._box: tuple[Floats, Floats] | None = None  # without a probing move that has been prepared
         self.low = state.setpoint.copy()
@@ -90,7 +89,7 @@ class PathFeed:
             self._releases = False
             self.row["limit"] = NO_LIMIT
             self.prepare()
-        self._forget_marks()
+        self.blocks.forget_passed()
         self._fill()
         self._find_stop()
         self.prepare()
@@ -134,8 +133,8 @@ class PathFeed:
         """Tell whether one more block is to be prepared; alone it is the one with which the path has just gone on."""
         if self.stopper.alone:
             row, over = self.row, self.channel.text_is_over
-            return over or (bool(row["head"] == row["tail"] == self._left) and not self.at_mark)
-        return len(self._ends) <= (_PIECE if self._ahead is None else self._ahead)
+            return over or (bool(row["head"] == row["tail"] == self._left) and not self.blocks.at_mark)
+        return len(self._ends) <= (PIECE if self._ahead is None else self._ahead)
 
     def prepare(self) -> None:
         """Take what was appended into the look-ahead."""
@@ -146,7 +145,7 @@ class PathFeed:
         probing = list(self.channel.writer.probes.values())
         prepared = int(row["prepared"])
         if probing and first < prepared:  # what lies after may not be traversed
-            tags = self.tags(first, prepared)
+            tags = self.blocks.tags(first, prepared)
             row["prepared"] = first + tags.index(probing[-1]) if probing[-1] in tags else first
             measure_queue(state.seg, state.paths, path, first, self.low, self.high)
             self._box = self._box or (self.low.copy(), self.high.copy())
@@ -185,75 +184,17 @@ class PathFeed:
             return int(row["head"] + row["capacity"] // 4)
         return until
 
-    # ------------------------------------------------------------------ blocks
-
-    def tags(self, first: int, after: int) -> list[int]:
-        """Return the tags of segments `first` up to `after`."""
-        counts = np.arange(first, after)
-        slots = self.row["base"] + counts % self.row["capacity"]
-        tags: list[int] = self.machine.state.seg.row["tag"][slots].tolist()
-        return tags
-
-    def block_end(self, count: int) -> int:
-        """Return the count after the last segment of the block that segment `count` belongs to, as far as known."""
-        tail = int(self.row["tail"])
-        if count >= tail:
-            return tail
-        segments, row = self.machine.state.seg.row["tag"], self.row
-        base, capacity = int(row["base"]), int(row["capacity"])
-        tag = segments[base + count % capacity]
-        count += 1
-        if count < tail and segments[base + count % capacity] != tag:
-            return count
-        while count < tail:
-            for other in self.tags(count, min(count + _PIECE, tail)):
-                if other != tag:
-                    return count
-                count += 1
-        return count
-
     def forget_records(self, executed: int) -> None:
         """Let the records go that neither the queue nor the executed block needs; now and then is enough."""
         channel, row = self.channel, self.row
         if not channel.records.crowded:
             return
-        tags = self.tags(int(row["head"]), int(row["tail"]))
+        tags = self.blocks.tags(int(row["head"]), int(row["tail"]))
         tags += [executed, channel.interpreter.last_tag, int(row["tag"])]
         tags += channel.writer.events.tags()
         tags += [tag for _, tag in channel.writer.marks or ()]
         tags += [item.tag for item in channel.writer.backlog]
         channel.records.keep(tags)
-
-    def next_tag(self) -> int | None:
-        """Return the tag of the block that comes next, None if it has not been prepared."""
-        marks, head = self.channel.writer.marks, int(self.row["head"])
-        if marks and self.at_mark:
-            return marks[0][1]
-        return self.tags(head, head + 1)[0] if head < self.row["tail"] else None
-
-    def pass_marks(self) -> None:
-        """Forget the blocks without segments that lie before segments that have been traversed."""
-        marks, head = self.channel.writer.marks, int(self.row["head"])
-        while marks and marks[0][0] < head:
-            marks.popleft()
-
-    def take_mark(self) -> int | None:
-        """Take the block without segments that comes next; return its tag, None if a segment comes next."""
-        marks = self.channel.writer.marks
-        return marks.popleft()[1] if marks and self.at_mark else None
-
-    @property
-    def at_mark(self) -> bool:
-        """Whether a block without segments comes next."""
-        marks = self.channel.writer.marks
-        return bool(marks and marks[0][0] <= self.row["head"])
-
-    def _forget_marks(self) -> None:
-        """Forget the blocks without segments that the path has passed."""
-        marks, row = self.channel.writer.marks, self.row
-        passed = int(row["head"]) - (row["state"] not in (RUNNING, HELD))
-        while marks and marks[0][0] <= passed:
-            marks.popleft()
 
     # ------------------------------------------------------------------ stops
 
@@ -310,12 +251,12 @@ class PathFeed:
         if self.stopper.idle or head >= tail:
             return None
         if row["state"] == READY and head != self._left:
-            tag = self.tags(head, head + 1)[0]  # nothing lay before it when it came
+            tag = self.blocks.tags(head, head + 1)[0]  # nothing lay before it when it came
             if tag != row["tag"] and self.stopper.stops_before(tag):
                 return head
         first = max(head, self._seen)
         begin = max(first - 1, head)
-        tags = self.tags(begin, tail)
+        tags = self.blocks.tags(begin, tail)
         marks = self.channel.writer.marks or deque()
         ahead = (mark for mark in islice(marks, None) if mark[0] >= max(first, head + 1))
         earliest = None
@@ -332,12 +273,12 @@ class PathFeed:
     def begins_with_mark(self) -> bool:
         """Whether the block that has just been prepared alone leaves nothing in the queue."""
         row = self.row
-        return self.stopper.alone and bool(row["head"] == row["tail"] == self._left) and self.at_mark
+        return self.stopper.alone and bool(row["head"] == row["tail"] == self._left) and self.blocks.at_mark
 
     @property
     def stops_here(self) -> bool:
         """Whether the path stands where what is prepared ends, and the next block waits for its start."""
-        return self._stops_at_end and bool(self.row["head"] >= self.row["tail"]) and not self.at_mark
+        return self._stops_at_end and bool(self.row["head"] >= self.row["tail"]) and not self.blocks.at_mark
 
     @property
     def _stops_at_end(self) -> bool:

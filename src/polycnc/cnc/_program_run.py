@@ -1,7 +1,7 @@
 """A program run: one program on one path of a machine, that can be stopped and continued at every cycle.
 
-Nothing here changes where the path leads. Holding, overrides and stops at block ends only change how fast it is gone
-along, within every axis' limits, so a run that is interrupted ends where the undisturbed one does, to the last bit.
+Nothing here changes where the path leads. Holding, overrides and stops at block ends only change how fast it is
+followed, within every axis' limits, so a run that is interrupted ends where the undisturbed one does, to the last bit.
 """
 
 from __future__ import annotations
@@ -11,14 +11,15 @@ from collections.abc import Callable, Iterable, Sequence
 from polycnc import kernel
 from polycnc.cnc._block_search import block_line, calculate_to
 from polycnc.cnc._passed_events import OnPassed
+from polycnc.cnc._path_events import OnEvent
 from polycnc.cnc._path_feed import PathFeed
 from polycnc.cnc._path_overrides import PathOverrides
-from polycnc.cnc._path_runner import Floats, OnEvent, PathRunner, Rows, Until
+from polycnc.cnc._path_runner import Floats, PathRunner, Rows, Until
 from polycnc.cnc._run_progress import RunProgress
 from polycnc.cnc._run_snapshot import DEVICE, FindText, RunSnapshot, SavedRun, file_text
 from polycnc.cnc._run_state import RunAlarm, RunOptions, RunState
 from polycnc.cnc._stops import Breakpoint, Step, Stopper
-from polycnc.cnc._tool_times import ToolTime
+from polycnc.cnc._tool_times import ToolTime, path_times
 from polycnc.errors import ProgramError, UsageError
 from polycnc.machine import Machine, MachineConfig, Snapshot, SnapshotError, described
 from polycnc.nc import (
@@ -47,13 +48,13 @@ class ProgramRun:
     """Run `program` on path `path` of `machine`.
 
     `rows` gets the recorder's rows in pieces, with the tag of each row's block; their column BLOCK holds lines.
-    `on_event` is told each auxiliary function in the cycle in which the path comes to it; if it returns True the path
+    `on_event` gets each auxiliary function in the cycle in which the path comes to it; if it returns True the path
     stands there until `answered`. With `on_passed` the path does not stop for those at which it need not: they are told
     later, to that. `axes` are the
     names of the machine's axes in this channel, those of others by `of_another_channel`.
 
     `skip_signal` is the signal that ends a skip move: the axes brake, and the next block goes on from where they stand.
-    The surfaces of the machine file do the same. `on_skip` is told when either is met.
+    The surfaces of the machine file do the same. `on_skip` is called when either ends a move.
 
     Without `attaches` it is made to go back to a snapshot: only then it takes its language over.
 
@@ -93,7 +94,7 @@ class ProgramRun:
         ahead = self.dialect.blocks_ahead if options.blocks_ahead is None else options.blocks_ahead
         self._path_runner = PathRunner(machine, channel, options, moment, ahead=ahead)
         self._path_runner.rows = rows
-        self._path_runner.on_event = on_event
+        self._path_runner.events.on_event = on_event
         self._path_runner.passed.told = on_passed
 
     def _new_channel(
@@ -135,6 +136,11 @@ class ProgramRun:
         return self._path_runner.channel
 
     @property
+    def language(self) -> Language | None:
+        """The language that executes the program, None where it holds NC blocks only."""
+        return self._language
+
+    @property
     def feed(self) -> PathFeed:
         """What keeps the path supplied."""
         return self._path_runner.feed
@@ -151,21 +157,21 @@ class ProgramRun:
 
     @property
     def on_event(self) -> OnEvent | None:
-        """What is told each auxiliary function."""
-        return self._path_runner.on_event
+        """What gets each auxiliary function."""
+        return self._path_runner.events.on_event
 
     @on_event.setter
     def on_event(self, on_event: OnEvent | None) -> None:
-        self._path_runner.on_event = on_event
+        self._path_runner.events.on_event = on_event
 
     @property
     def on_skip(self) -> Callable[[], None] | None:
-        """What is told the end of a skip move."""
-        return self._path_runner.on_skip
+        """What is called at the end of a skip move."""
+        return self._path_runner.events.on_skip
 
     @on_skip.setter
     def on_skip(self, on_skip: Callable[[], None] | None) -> None:
-        self._path_runner.on_skip = on_skip
+        self._path_runner.events.on_skip = on_skip
 
     # ------------------------------------------------------------------ commands
 
@@ -283,7 +289,7 @@ class ProgramRun:
 
     def answered(self) -> None:
         """Let the path go on from the auxiliary function at which it stands."""
-        self._path_runner.answered()
+        self._path_runner.events.answered()
 
     def reset(self) -> None:
         """Break the program off: the axes brake on the path, then the rest of it is dropped.
@@ -301,7 +307,7 @@ class ProgramRun:
         self._moment.dropping = True
         self._moment.hold = True
         self._moment.state = RunState.RESET
-        self._path_runner.set_hold()
+        self._path_runner.path_hold.apply()
         self._path_runner.look()
 
     @property
@@ -409,7 +415,7 @@ class ProgramRun:
 
     def stands_at(self, stop: Stop) -> bool:
         """Tell whether the program would stand at such a stop now."""
-        return self._path_runner.stands_at(stop)
+        return self._path_runner.events.stands_at(stop)
 
     # ------------------------------------------------------------------ what it is doing
 
@@ -496,12 +502,12 @@ class ProgramRun:
     @property
     def tool_times(self) -> dict[int, ToolTime]:
         """How long each tool has cut and positioned so far; tool 0 is an empty spindle."""
-        return self._moment.tool_times.until(self._path_runner.path_times)
+        return self._moment.tool_times.until(path_times(self.machine, self.path))
 
     @property
     def path_times(self) -> ToolTime:
         """How long the path has cut and positioned so far, with whatever tool."""
-        return self._path_runner.path_times
+        return path_times(self.machine, self.path)
 
     @property
     def distance_to_go(self) -> dict[str, float]:
@@ -525,7 +531,7 @@ class ProgramRun:
         return self._path_runner.advance(cycles, until=until, asleep=asleep)
 
     def skip(self) -> int:
-        """Go along what is planned in closed form, to the next thing to be done; return the cycles.
+        """Follow what is planned in closed form, to the next thing to be done; return the cycles.
 
         For runs that nobody looks at: servos are ideal, limit switches and the recorder see nothing.
         """
@@ -609,7 +615,7 @@ class ProgramRun:
         runner.feed.restore(saved.feed)
         runner.stopper.step, runner.stopper.depth = saved.step, saved.depth
         runner.overrides.kept = saved.override_kept
-        runner.moment = saved.moment.copy()
+        runner.moment.restore(saved.moment)
         runner.take_switch()
 
     @property

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field, fields, replace
 
 from polycnc.cnc._probing import Probing
 from polycnc.cnc._run_state import RunAlarm, RunState
@@ -51,3 +51,9 @@ class RunProgress:
             tool_times=self.tool_times.copy(),
             probing=None if self.probing is None else replace(self.probing),
         )
+
+    def restore(self, saved: RunProgress) -> None:
+        """Go back to a moment, which does not change with this one."""
+        copied = saved.copy()
+        for each in fields(self):
+            setattr(self, each.name, getattr(copied, each.name))

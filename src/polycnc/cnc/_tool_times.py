@@ -4,6 +4,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
 
+from polycnc import kernel
+from polycnc.machine import Machine
+
 
 @dataclass(frozen=True, slots=True)
 class ToolTime:
@@ -43,3 +46,9 @@ class ToolTimes:
         rapid_s = before.rapid_s + now.rapid_s - self.since.rapid_s
         if cutting_s > 0.0 or rapid_s > 0.0:
             times[self.tool] = ToolTime(cutting_s, rapid_s)
+
+
+def path_times(machine: Machine, path: int) -> ToolTime:
+    """Return how long a path has cut and positioned so far, with whatever tool."""
+    totals = machine.state.paths.totals[path]
+    return ToolTime(float(totals[kernel.FEED_S]), float(totals[kernel.RAPID_S]))

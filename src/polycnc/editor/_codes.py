@@ -5,11 +5,17 @@ from __future__ import annotations
 import re
 from dataclasses import dataclass
 
-from polycnc.editor._place import Span, words_only
+from polycnc.editor._place import Span, is_statement, words_only
 from polycnc.nc import Dialect, MAction
+from polycnc.nc.cpl import FUNCTION_GROUPS, STATEMENTS
+from polycnc.nc.macro import FUNCTIONS as MACRO_FUNCTIONS
+from polycnc.nc.macro import OPERATORS as MACRO_OPERATORS
+from polycnc.nc.rs274 import FUNCTIONS as NGC_FUNCTIONS
+from polycnc.nc.rs274 import KNOWN_NAMES
 
 _CODE = re.compile(r"(?<![A-Za-z_%$])([GM])[ \t]*([0-9]{1,6}(?:\.[0-9]{0,6})?)", re.IGNORECASE)
 _ADDRESS = re.compile(r"(?<![A-Za-z_%$#.])([A-Z])[ \t]*[-+]?[0-9.#\[][0-9.\[\]#]*", re.IGNORECASE)
+_NAME_BEGUN = re.compile(r"[A-Za-z_<@#][A-Za-z0-9_]*\Z")
 _BEGUN = re.compile(r"(?:\A|(?<=[^A-Za-z_%$]))([GM])[0-9]*\.?[0-9]*\Z", re.IGNORECASE)
 
 
@@ -46,13 +52,43 @@ def completions(lines: list[str], line: int, character: int, dialect: Dialect) -
     """Return the codes of the dialect with the letter that has been begun before a place."""
     if not 0 <= line < len(lines):
         return []
-    begun = _BEGUN.search(words_only(lines[line][:character], dialect))
+    before = lines[line][:character]
+    begun = _BEGUN.search(words_only(before, dialect))
     if begun is None:
-        return []
+        return _functions(before, dialect) if _NAME_BEGUN.search(before) else []
     if begun[1].upper() == "G":
         return [Completion(f"G{code:g}", each.sentence) for code, each in sorted(dialect.g_codes().items())]
     codes = sorted({int(code) for code in dialect.m})
     return [Completion(f"M{code}", _plain(dialect.m_action(code))) for code in codes]
+
+
+def _functions(before: str, dialect: Dialect) -> list[Completion]:
+    """Return the functions, statements and predefined names of the language that a program may hold."""
+    match dialect.language:
+        case "cpl" if is_statement(f"{before} ", dialect) or "[" in before:
+            rows = [row for rows in FUNCTION_GROUPS.values() for row in rows]
+            statements = [] if not is_statement(f"{before} ", dialect) else list(STATEMENTS.items())
+            return [Completion(row.name, f"{row.usage}: {row.sentence}") for row in rows] + [
+                Completion(usage.partition(" ")[0].rstrip(",:"), f"{usage}: {sentence}")
+                for usage, sentence in statements
+            ]
+        case "macro" if "[" in before or "=" in before or "#" in before:
+            rows_of = {**MACRO_FUNCTIONS, **MACRO_OPERATORS}
+            return [Completion(name, _sentence(run)) for name, run in rows_of.items()]
+        case "rs274" if before.rpartition("#")[2].startswith("<"):
+            return [Completion(name, "value of the control") for name in KNOWN_NAMES]
+        case "rs274" if "[" in before:
+            return [
+                Completion(name.rstrip("_").upper(), "function")
+                for name in NGC_FUNCTIONS
+                if name.endswith("_")
+            ]
+        case _:
+            return []
+
+
+def _sentence(run: object) -> str:
+    return (run.__doc__ or "").partition("\n")[0]
 
 
 def _described(letter: str, code: float, dialect: Dialect) -> str:

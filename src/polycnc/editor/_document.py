@@ -5,6 +5,7 @@ from __future__ import annotations
 from bisect import bisect_right
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import accumulate
 
 from polycnc.editor._place import LINE_END, lines_of
 
@@ -22,19 +23,26 @@ class Document:
         return lines_of(self.text)
 
     @cached_property
-    def _starts(self) -> list[int]:
-        return [0, *(found.end() for found in LINE_END.finditer(self.text))]
+    def starts(self) -> list[int]:
+        """Where the lines begin in the text."""
+        if "\r" in self.text:
+            return [0, *(found.end() for found in LINE_END.finditer(self.text))]
+        return list(accumulate((len(line) + 1 for line in self.lines[:-1]), initial=0))
+
+    def start(self, line: int) -> int:
+        """Return where a line begins in the text."""
+        return self.starts[line]
 
     def offset(self, line: int, units: int) -> int:
         """Return the place in the text of a position; beyond a line it is its end, beyond the text the text's end."""
         if line >= len(self.lines):
             return len(self.text)
-        return self._starts[max(line, 0)] + characters(self.lines[max(line, 0)], units)
+        return self.starts[max(line, 0)] + characters(self.lines[max(line, 0)], units)
 
     def place(self, offset: int) -> tuple[int, int]:
         """Return line and character of a place in the text."""
-        line = bisect_right(self._starts, offset) - 1
-        return line, offset - self._starts[line]
+        line = bisect_right(self.starts, offset) - 1
+        return line, offset - self.starts[line]
 
     def changed(self, begin: tuple[int, int], end: tuple[int, int], text: str) -> Document:
         """Return the document with a text in place of that between two positions (line, units)."""
@@ -52,6 +60,8 @@ def characters(line: str, count: int) -> int:
     count = max(count, 0)
     if line.isascii():
         return min(count, len(line))
-    before = line.encode("utf-16-le", "surrogatepass")[: 2 * count]
-    cut = len(before) >= 2 and 0xD8 <= before[-1] <= 0xDB and 2 * count < 2 * units(line)
-    return len(before.decode("utf-16-le", "surrogatepass" if not cut else "ignore"))
+    content = line.encode("utf-16-le", "surrogatepass")
+    before, after = content[: 2 * count], content[2 * count : 2 * count + 2]
+    if before and after and 0xD8 <= before[-1] <= 0xDB and 0xDC <= after[1] <= 0xDF:
+        before = before[:-2]
+    return len(before.decode("utf-16-le", "surrogatepass"))

@@ -27,13 +27,15 @@ class TooLong(Exception):  # noqa: N818  it is no error
     """A text has been looked at for as long as it may be."""
 
 
-def within(time_s: float, go_on: GoOn) -> Callable[[float], None]:
+def within(
+    time_s: float, go_on: GoOn, clock: Callable[[], float] = time.monotonic
+) -> Callable[[float], None]:
     """Return what ends work as `go_on` does, and by `TooLong` after a time."""
-    until = time.monotonic() + time_s
+    until = clock() + time_s
 
     def progress(_: float) -> None:
         go_on()
-        if time.monotonic() > until:
+        if clock() > until:
             raise TooLong
 
     return progress

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 import os
 import sys
 
@@ -28,6 +29,7 @@ def serve_editor(machine: MachineConfig | None = None, dialect: Dialect | None =
         raise UsageError(
             "the language server needs pygls", hint="Install it: pip install 'polycnc[editor]'."
         ) from None
+    logging.getLogger("pygls").addHandler(logging.NullHandler())  # what is refused is answered, and no fault
     server = editor_server(machine, dialect)
     sys.stdout.flush()
     out = os.fdopen(os.dup(sys.stdout.fileno()), "wb")

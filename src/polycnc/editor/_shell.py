@@ -3,27 +3,39 @@
 from __future__ import annotations
 
 import asyncio
-from collections.abc import Coroutine
-from contextlib import suppress
+from collections.abc import Coroutine, Iterator
+from contextlib import contextmanager, suppress
+from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 from typing import Any
 from urllib.parse import urlsplit
 
 from lsprotocol import types as lsp
+from pygls.exceptions import JsonRpcException
 from pygls.uris import to_fs_path
 
 from polycnc.editor._codes import completions, hover, word
 from polycnc.editor._document import Document, characters, units
 from polycnc.editor._findings import Finding, findings
+from polycnc.editor._format import formatted
+from polycnc.editor._kinds import Kind, kind_of
+from polycnc.editor._names import PROGRAM, Name, Role, givers, name_at, names_of, program_file, same
 from polycnc.editor._newest import LONGEST_S, GoOn, Newest, Overtaken, TooLong, within
 from polycnc.editor._outline import Symbol, outline
-from polycnc.editor._place import Span
+from polycnc.editor._place import MOST_LINE, Span
 from polycnc.editor._protocol import EditorServer
+from polycnc.editor._quick import Checked, quick_findings
 from polycnc.editor._reading import held, taken, word_meaning
+from polycnc.editor._rename import CONTROL, STAND_ALONE, check_renaming, renamed
+from polycnc.editor._stand_alone import sap_completions, sap_hover, sap_names, sap_outline
+from polycnc.editor._tables import control_names, key_completions, key_hover, table_outline
+from polycnc.errors import UsageError
 from polycnc.machine import MachineConfig, load_machine
 from polycnc.nc import Dialect, ModalWords, ProgramText, choose_dialect
 from polycnc.runner import Survey, holds_before, survey
+
+_NOTHING = Document("")
 
 
 class _Editor:
@@ -35,6 +47,7 @@ class _Editor:
         self._dialect = dialect
         self._config = load_machine(machine)
         self._newest, self._answers, self._times = Newest(), Newest(), Newest()
+        self._checked: dict[str, Checked] = {}
         self._surveys: dict[str, tuple[str, Survey | None]] = {}
         self._surveying: dict[str, asyncio.Future[None]] = {}
         self._documents: dict[str, Document] = {}
@@ -70,15 +83,30 @@ class _Editor:
         self._newest.drop(uri)
         self._documents.pop(uri, None)
         self._surveys.pop(uri, None)
+        self._checked.pop(uri, None)
         self._server.text_document_publish_diagnostics(lsp.PublishDiagnosticsParams(uri, []))
 
     # ------------------------------------------------------------------ questions
 
     async def hover(self, params: lsp.HoverParams) -> lsp.Hover | None:
-        document, dialect = self._read(params.text_document.uri)
-        if dialect is None:
+        uri = params.text_document.uri
+        document, kind, dialect = self._read(uri)
+        line, character = _place(document, params.position)
+        if kind is Kind.STAND_ALONE:
+            found = sap_hover(document.lines, line, character)
+        elif dialect is None:
+            found = key_hover(document.lines, line, character, kind)
+        else:
+            found = await self._word(uri, document, line, character, dialect)
+        if found is None:
             return None
-        uri, (line, character) = params.text_document.uri, _place(document, params.position)
+        content = lsp.MarkupContent(lsp.MarkupKind.Markdown, found[0])
+        return lsp.Hover(content, _range(found[1], document))
+
+    async def _word(
+        self, uri: str, document: Document, line: int, character: int, dialect: Dialect
+    ) -> tuple[str, Span] | None:
+        """Return what a word of a program means, what holds before its line and how long that takes, and its place."""
         code = hover(document.lines, line, character, dialect)
         at = word(document.lines, line, character, dialect)
         if code is None and at is None:
@@ -93,26 +121,102 @@ class _Editor:
         if known is not None and known[0] == document.text and known[1] is not None:
             time = known[1].lines.get(line + 1)
             parts.append(taken(time) if time or before else "")
-        content = lsp.MarkupContent(lsp.MarkupKind.Markdown, "\n\n".join(filter(None, parts)))
-        return lsp.Hover(content, _range(span, document)) if content.value else None
+        content = "\n\n".join(filter(None, parts))
+        return (content, span) if content else None
 
     def completion(self, params: lsp.CompletionParams) -> list[lsp.CompletionItem]:
-        document, dialect = self._read(params.text_document.uri)
+        document, kind, dialect = self._read(params.text_document.uri)
         line, character = _place(document, params.position)
-        found = [] if dialect is None else completions(document.lines, line, character, dialect)
-        kind = lsp.CompletionItemKind.Keyword
+        if kind is Kind.STAND_ALONE:
+            found = sap_completions(document.text)
+        elif dialect is None:
+            found = key_completions(document.lines, line, character, kind)
+        else:
+            found = completions(document.lines, line, character, dialect)
+        item = lsp.CompletionItemKind.Keyword
         return [
-            lsp.CompletionItem(each.label, kind=kind, detail=each.detail, sort_text=f"{number:04}")
+            lsp.CompletionItem(each.label, kind=item, detail=each.detail, sort_text=f"{number:04}")
             for number, each in enumerate(found)
         ]
 
     async def symbols(self, params: lsp.DocumentSymbolParams) -> list[lsp.DocumentSymbol]:
         uri = params.text_document.uri
-        document, dialect = self._read(uri)
+        document, kind, dialect = self._read(uri)
+        if kind is Kind.STAND_ALONE:
+            found = sap_outline(document.text, len(document.lines))
+        elif dialect is not None:
+            survey = await self._survey(uri, document, dialect)
+            found = outline(document.lines, dialect, survey)
+        else:
+            found = [] if kind in (Kind.PROGRAM, Kind.UNKNOWN) else table_outline(document.lines)
+        return [_symbol(each, document) for each in found]
+
+    # ------------------------------------------------------------------ names
+
+    def definition(self, params: lsp.DefinitionParams) -> list[lsp.Location]:
+        uri = params.text_document.uri
+        named = self._named(uri)
+        found = named.at(params.position)
+        if found is None:
+            return []
+        given = givers(named.names, found)
+        _, _, dialect = self._read(uri)
+        if given or found.kind != PROGRAM or dialect is None:
+            return _locations(uri, named.document, given)
+        place = program_file(found.key, named.document.text, _name(uri), dialect)
+        if place is None:
+            return []
+        start = lsp.Position(place[1], 0)
+        return [lsp.Location(place[0].resolve().as_uri(), lsp.Range(start, start))]
+
+    def references(self, params: lsp.ReferenceParams) -> list[lsp.Location]:
+        uri = params.text_document.uri
+        named = self._named(uri)
+        found = named.at(params.position)
+        asked = [] if found is None else same(named.names, found)
+        if not params.context.include_declaration:
+            asked = [each for each in asked if each.role is Role.USED]
+        return _locations(uri, named.document, asked)
+
+    def can_rename(self, params: lsp.PrepareRenameParams) -> lsp.Range | None:
+        named = self._named(params.text_document.uri)
+        found = named.at(params.position)
+        if found is None:
+            return None
+        with _refusals():
+            check_renaming(named.names, found, named.language)
+        return _range(found.span, named.document)
+
+    def rename(self, params: lsp.RenameParams) -> lsp.WorkspaceEdit | None:
+        uri = params.text_document.uri
+        named = self._named(uri)
+        found = named.at(params.position)
+        if found is None:
+            return None
+        with _refusals():
+            changes = renamed(named.names, named.document.lines, found, params.new_name, named.language)
+        edits = [lsp.TextEdit(_range(span, named.document), text) for span, text in changes]
+        return lsp.WorkspaceEdit({uri: edits})
+
+    def format(self, params: lsp.DocumentFormattingParams) -> list[lsp.TextEdit]:
+        document, _, dialect = self._read(params.text_document.uri)
         if dialect is None:
             return []
-        found = await self._survey(uri, document, dialect)
-        return [_symbol(each, document) for each in outline(document.lines, dialect, found)]
+        lines = document.lines
+        return [
+            lsp.TextEdit(_range(Span(number, 0, len(before)), document), after)
+            for number, (before, after) in enumerate(zip(lines, formatted(lines, dialect), strict=True))
+            if before != after
+        ]
+
+    def _named(self, uri: str) -> _Named:
+        """Return a text with its names, and what they are names in."""
+        document, kind, dialect = self._read(uri)
+        if dialect is not None:
+            return _Named(document, list(names_of(document.lines, dialect)), dialect.language)
+        if kind is Kind.STAND_ALONE:
+            return _Named(document, sap_names(document.text), STAND_ALONE)
+        return _Named(document, control_names(document.lines) if kind is Kind.CONTROL else [], CONTROL)
 
     # ------------------------------------------------------------------ checks
 
@@ -122,19 +226,27 @@ class _Editor:
         task.add_done_callback(self._under_way.discard)
 
     async def _check(self, uri: str) -> None:
-        document = self._document(uri)
+        document, name, loop = self._document(uri), _name(uri), asyncio.get_running_loop()
+        before = self._checked.get(uri)
 
         def work(go_on: GoOn) -> list[Finding]:
-            return findings(document, _name(uri), self._machine, self._dialect, go_on)
+            if before is not None:
+                first = quick_findings(before, document, name, self._machine, self._dialect, go_on)
+                if first is not None:
+                    go_on()
+                    loop.call_soon_threadsafe(self._publish, uri, document, first)
+            return findings(document, name, self._machine, self._dialect, go_on)
 
-        found = await self._newest.run(uri, work)
+        try:
+            found = await self._newest.run(uri, work)
+        except Exception as error:  # whatever it is, it is ours: nobody is shown a traceback
+            what = f"internal error, the mistake is not yours: {type(error).__name__}: {error}"
+            found = [Finding(Span(0, 0, 1), f"{what}\nPlease report it, with this text.", "", True)]
         if found is not None:
-            shown = [_diagnostic(each, document) for each in found]
-            self._server.text_document_publish_diagnostics(
-                lsp.PublishDiagnosticsParams(uri, shown, document.version)
-            )
+            self._checked[uri] = Checked(document, found)
+            self._publish(uri, document, found)
 
-        document, dialect = self._read(uri)
+        document, _, dialect = self._read(uri)
         if found is not None and dialect is not None:
             await self._survey(uri, document, dialect)
 
@@ -182,14 +294,39 @@ class _Editor:
             return None
         return holds_before(program, line + 1, self._config, dialect, root=_root(program.name))
 
-    def _document(self, uri: str) -> Document:
-        return self._documents.get(uri) or Document("")
+    def _publish(self, uri: str, document: Document, found: list[Finding]) -> None:
+        if self._document(uri) is document:
+            shown = [_diagnostic(each, document) for each in found]
+            self._server.text_document_publish_diagnostics(
+                lsp.PublishDiagnosticsParams(uri, shown, document.version)
+            )
 
-    def _read(self, uri: str) -> tuple[Document, Dialect | None]:
-        """Return a text and its dialect, None for a language that nobody reads here."""
-        document = self._document(uri)
-        chosen = choose_dialect(ProgramText.from_text(document.text, _name(uri)), self._dialect)
-        return document, None if chosen.problem else chosen.dialect
+    def _document(self, uri: str) -> Document:
+        return self._documents.get(uri, _NOTHING)
+
+    def _read(self, uri: str) -> tuple[Document, Kind, Dialect | None]:
+        """Return a text, what it is, and the dialect of a program; None for a language that nobody reads here."""
+        document, name = self._document(uri), _name(uri)
+        if any(
+            len(line) > MOST_LINE for line in document.lines
+        ):  # which nobody writes: looked at by the check alone
+            return Document(""), Kind.UNKNOWN, None
+        kind = kind_of(name, document.text)
+        if kind is not Kind.PROGRAM:
+            return document, kind, None
+        chosen = choose_dialect(ProgramText.from_text(document.text, name), self._dialect)
+        return document, kind, None if chosen.problem else chosen.dialect
+
+
+@dataclass(frozen=True, slots=True)
+class _Named:
+    document: Document
+    names: list[Name]
+    language: str
+
+    def at(self, position: lsp.Position) -> Name | None:
+        """Return the name at a position."""
+        return name_at(self.names, *_place(self.document, position))
 
 
 def editor_server(machine: MachineConfig | None, dialect: Dialect | None) -> EditorServer:
@@ -202,8 +339,13 @@ def editor_server(machine: MachineConfig | None, dialect: Dialect | None) -> Edi
         (lsp.TEXT_DOCUMENT_DID_SAVE, editor.saved, None),
         (lsp.TEXT_DOCUMENT_DID_CLOSE, editor.closed, None),
         (lsp.TEXT_DOCUMENT_HOVER, editor.hover, None),
-        (lsp.TEXT_DOCUMENT_COMPLETION, editor.completion, lsp.CompletionOptions(["G", "M"])),
+        (lsp.TEXT_DOCUMENT_COMPLETION, editor.completion, lsp.CompletionOptions(["G", "M", "#", "[", "="])),
         (lsp.TEXT_DOCUMENT_DOCUMENT_SYMBOL, editor.symbols, None),
+        (lsp.TEXT_DOCUMENT_DEFINITION, editor.definition, None),
+        (lsp.TEXT_DOCUMENT_REFERENCES, editor.references, None),
+        (lsp.TEXT_DOCUMENT_RENAME, editor.rename, lsp.RenameOptions(prepare_provider=True)),
+        (lsp.TEXT_DOCUMENT_PREPARE_RENAME, editor.can_rename, None),
+        (lsp.TEXT_DOCUMENT_FORMATTING, editor.format, None),
     ):
         server.feature(method, options)(partial(answer))  # a feature carries attributes, which methods cannot
     return server
@@ -232,6 +374,19 @@ def _range(span: Span, document: Document) -> lsp.Range:
     return lsp.Range(
         lsp.Position(span.line, units(line[: span.begin])), lsp.Position(span.line, units(line[: span.end]))
     )
+
+
+@contextmanager
+def _refusals() -> Iterator[None]:
+    """Send what is refused as the answer to a request."""
+    try:
+        yield
+    except UsageError as error:
+        raise JsonRpcException(str(error), int(lsp.LSPErrorCodes.RequestFailed)) from None
+
+
+def _locations(uri: str, document: Document, names: list[Name]) -> list[lsp.Location]:
+    return [lsp.Location(uri, _range(each.span, document)) for each in names]
 
 
 def _diagnostic(found: Finding, document: Document) -> lsp.Diagnostic:

@@ -163,7 +163,7 @@ def start_path(paths: Paths, g: int) -> None:
 
 @compiled
 def is_held(path: np.void, row: np.void) -> bool:
-    """Tell whether a path may not go along the segment of this row; an override of 0 leaves waits alone."""
+    """Tell whether a path may not follow the segment of this row; an override of 0 leaves waits alone."""
     if path["hold"] != 0:
         return True
     if row["kind"] == WAIT:

@@ -202,7 +202,7 @@ def earliest_limit(seg: Segments, paths: Paths, g: int, dt: float) -> int:
 
 @entry
 def drop_queue(seg: Segments, paths: Paths, g: int) -> None:
-    """Forget what path `g`, which is at rest, has still to go along; it stands where it is."""
+    """Forget what path `g`, which is at rest, has still to follow; it stays where it is."""
     path = paths.row[g]
     tag = path["tag"]
     path["tail"] = path["head"]

@@ -37,7 +37,7 @@ def names_of(generator: Suspended) -> dict[str, Any]:
 
 
 def inner_of(generator: Suspended) -> object:
-    """Return the iterator that a generator gives out from now, None if it gives by itself."""
+    """Return the iterator that a generator emits from now, None if it gives by itself."""
     if generator.gi_yieldfrom is not None or generator.gi_frame is None:
         return generator.gi_yieldfrom
     return generator.gi_frame.f_locals.get(_SAVED, {}).get(INNER)  # it is about to go on with it

@@ -29,6 +29,7 @@ from polycnc.machine._toml import (
     load_toml,
     parse_toml,
     problem,
+    range_text,
     validate,
 )
 from polycnc.machine._toml_locator import KeyPath, Locator
@@ -125,6 +126,7 @@ __all__ = [
     "parse_toml",
     "preset_text",
     "problem",
+    "range_text",
     "restore_state",
     "scan_edges",
     "validate",

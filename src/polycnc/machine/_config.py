@@ -17,6 +17,7 @@ from polycnc.errors import UsageError
 from polycnc.machine._bounds import LARGEST_POSITION, LONGEST_BLOCK_S, SHORTEST_CYCLE_S
 from polycnc.machine._config_axis import AnyAxis, NotNegative, Position, Rate, Share
 from polycnc.machine._config_probe import SurfaceConfig, surface_problems
+from polycnc.machine._config_programs import ProgramsConfig
 from polycnc.machine._toml import StrictModel, problem
 from polycnc.machine._toml_locator import KeyPath
 from polycnc.units import whole
@@ -306,6 +307,9 @@ class MachineConfig(StrictModel):
         default={}, description="Position of each axis at cycle 0, like `X = 10`; absent: its home position."
     )
     io: IoConfig = Field(default=IoConfig(), description="The I/O image, see `[io]`.")
+    programs: ProgramsConfig = Field(
+        default=ProgramsConfig(), description="What programs find beside them, see `[programs]`."
+    )
     surfaces: tuple[SurfaceConfig, ...] = Field(
         default=(), alias="surface", description="What a probe meets, see `[[surface]]`."
     )

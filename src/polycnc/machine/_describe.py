@@ -20,6 +20,7 @@ from polycnc.machine._config import (
 )
 from polycnc.machine._config_axis import AxisConfig, LinearAxis, LinearServo, RotaryAxis, RotaryServo
 from polycnc.machine._config_probe import SurfaceConfig
+from polycnc.machine._config_programs import ProgramsConfig
 from polycnc.machine._toml import range_text
 
 AXIS_COLUMNS = ("axis", "kind", "vmax", "amax", "soft limits", "home", "servo")
@@ -108,6 +109,12 @@ _SECTIONS: tuple[tuple[str, str, type[BaseModel], type[BaseModel]], ...] = (
         SurfaceConfig,
     ),
     ("`[io]`", "The inputs and outputs: bits, and words of 32 bits with sign.", IoConfig, IoConfig),
+    (
+        "`[programs]`",
+        "What programs in [LinuxCNC's language](linuxcnc-language.md) find beside them.",
+        ProgramsConfig,
+        ProgramsConfig,
+    ),
 )
 
 

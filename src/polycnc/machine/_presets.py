@@ -33,7 +33,8 @@ def load_machine(source: str | Path | MachineConfig | None = None) -> MachineCon
         if not _is_path(source):
             raise UsageError(f"there is no machine '{source}'", hint=_instead(source))
     data, locator = load_toml(source)
-    return validate(MachineConfig, data, locator)
+    config = validate(MachineConfig, data, locator)
+    return config.model_copy(update={"programs": config.programs.beside(Path(source).parent)})
 
 
 def preset_text(name: str) -> str:

@@ -94,7 +94,7 @@ class Store:
                     self._execute("COMMIT")
             except BaseException:
                 if self._depth == 1 and connection.in_transaction and not self._is_foreign:
-                    with suppress(sqlite3.Error):  # what broke it is what is told
+                    with suppress(sqlite3.Error):  # what broke it is what is reported
                         connection.execute("ROLLBACK")
                 raise
             finally:

@@ -137,7 +137,12 @@ def validate(model: type[M], data: Mapping[str, Any], locator: Locator) -> M:
         f"also {each.position}: {each.what}" + (f" ({each.hint})" if each.hint else "") for each in others
     ]
     hint = f"on line {first.position.line}: {first.hint}" if also and first.hint else first.hint
-    raise ConfigurationError(first.what, hint="\n".join([*also, hint]).strip("\n"), position=first.position)
+    parts = tuple(
+        ConfigurationError(each.what, hint=each.hint, position=each.position) for each in (first, *others)
+    )
+    raise ConfigurationError(
+        first.what, hint="\n".join([*also, hint]).strip("\n"), position=first.position, parts=parts
+    )
 
 
 def range_text(field: FieldInfo) -> str:

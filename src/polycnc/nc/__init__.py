@@ -10,10 +10,10 @@ from polycnc.nc.channel._channel_snapshot import CHANNEL_CLASSES, ChannelSnapsho
 from polycnc.nc.channel._languages import language_for
 from polycnc.nc.channel._line_check import LineCheck
 from polycnc.nc.channel._options import ChannelOptions
-from polycnc.nc.channel._sub_programs import Library
+from polycnc.nc.channel._sub_programs import Library, SubPrograms
 from polycnc.nc.dialect._dialect import DEFAULT_DIALECT, DIALECTS, Dialect, load_dialect
 from polycnc.nc.dialect._guess import ChosenDialect, choose_dialect, dialect_for
-from polycnc.nc.modal._actions import Action, Group, MAction
+from polycnc.nc.modal._actions import Action, Family, Group, MAction
 from polycnc.nc.modal._modal_snapshot import Spindle
 from polycnc.nc.modal._placement import Placement
 from polycnc.nc.modal._suppressed import Suppressed
@@ -33,6 +33,7 @@ from polycnc.nc.sources._block_source import (
     CallProgram,
     Drain,
     EndSource,
+    KeepingLanguage,
     Language,
     LastingLanguage,
     Pause,
@@ -71,8 +72,10 @@ __all__ = [
     "EndSource",
     "Event",
     "EventRun",
+    "Family",
     "Group",
     "IncomingText",
+    "KeepingLanguage",
     "Language",
     "LastingLanguage",
     "Library",
@@ -89,6 +92,7 @@ __all__ = [
     "Spindle",
     "Statement",
     "Stop",
+    "SubPrograms",
     "Suppressed",
     "TextRules",
     "TextSpan",

@@ -1,7 +1,7 @@
 """The post-processor: a control file turns a tool path into a program for a control."""
 
 from polycnc.post.macros._control_file import CONTROLS, ControlFile, load_control, parse_control, shipped_text
-from polycnc.post.macros._control_parameters import Parameters
+from polycnc.post.macros._control_parameters import SECTIONS, ControlTables, Parameters
 from polycnc.post.macros._parameters import NO_DIALECT, FiveAxis, RotaryAxis
 from polycnc.post.macros._reference import control_file_reference
 from polycnc.post.macros._run import MacroRun
@@ -16,9 +16,11 @@ from polycnc.post.tool_path._tool_path import ToolPath, open_tool_path, parse_to
 __all__ = [
     "CONTROLS",
     "NO_DIALECT",
+    "SECTIONS",
     "ArcAxis",
     "BlockMap",
     "ControlFile",
+    "ControlTables",
     "FiveAxis",
     "MacroRun",
     "Parameters",

@@ -184,7 +184,7 @@ class MachiningCollector:
         """Cut the body that a form tells, with the tools that machine and programs describe if none are given.
 
         Raises:
-            UsageError: a body that cannot be told, or none that can be cut.
+            UsageError: a body that cannot be derived, or none that can be cut.
         """
         if self._turned:
             raise NoStockError(

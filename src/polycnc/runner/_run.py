@@ -10,7 +10,8 @@ from typing import Literal, overload
 from polycnc.cnc import ProgramRun, RunOptions
 from polycnc.errors import ProgramError
 from polycnc.machine import Machine, MachineConfig, load_machine
-from polycnc.nc import Dialect, ProgramText, line_of
+from polycnc.nc import Dialect, KeepingLanguage, ProgramText, line_of
+from polycnc.outputs import complete_or_absent
 from polycnc.runner._event_log import EventLog
 from polycnc.runner._execution import LOOP_LIMIT_S, Progress, Rows, TaggedRows, run_to_end, totals
 from polycnc.runner._outcome import Alarm, RunMessage
@@ -157,8 +158,7 @@ def run_program(
         AlarmError: with `check`, the machine stopped.
         UsageError: no such file, machine or dialect.
     """
-    text = program_text(program)
-    config = load_machine(settings.machine)
+    text, config = program_text(program), load_machine(settings.machine)
     collector = TraceCollector(config, settings.servo) if trace else None
     tagged = [sink for sink in (collector.add_tagged if collector else None, tagged_rows) if sink is not None]
     form, machining = settings.form(), None
@@ -172,7 +172,7 @@ def run_program(
     chosen = settings.dialect_of(text)
     dialect = chosen.dialect
     control = control_for(dialect, text, simulated, settings.surroundings_of(program))
-    settings.check_screen(program, text, control)
+    settings.check_outputs(program, text, dialect, control)
     log = EventLog(text)
     options = RunOptions(
         block_delete=settings.skip_levels,
@@ -194,6 +194,7 @@ def run_program(
         on_passed=lambda passed: log.note_passed(passed, execution),
     )
     stuck = chosen.problem or _to_end(execution, control, settings, record)
+    _save_parameters(execution, settings)
     _remark(execution, text, times_remark(config, dialect, log.counts))
     result = replace(
         _result(execution, log, collector, stuck), guessed=chosen.reason, refused_s=log.refused_s
@@ -243,6 +244,13 @@ def _to_end(
     if settings.screen is not None:
         control.screen.save(Path(settings.screen))
     return stuck
+
+
+def _save_parameters(execution: ProgramRun, settings: RunSettings) -> None:
+    """Write the parameters that outlive the program where that was asked for."""
+    if settings.save_parameters is not None and isinstance(execution.language, KeepingLanguage):
+        with complete_or_absent(Path(settings.save_parameters)) as file:
+            file.write_text(execution.language.kept_text(), encoding="ascii")
 
 
 def _program_alarm(error: ProgramError, time_s: float) -> Alarm:

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 from polycnc.errors import UsageError
 from polycnc.machine import MachineConfig
 from polycnc.nc import ChosenDialect, Dialect, ProgramText, choose_dialect
-from polycnc.outputs import keep_inputs
+from polycnc.outputs import check_output, keep_inputs
 from polycnc.runner._execution import LOOP_LIMIT_S
 from polycnc.runner._program_control import ProgramControl, Surroundings, check_screen_file, root_of
 
@@ -41,6 +41,8 @@ class RunSettings:
     loop_limit_s: float = LOOP_LIMIT_S
     stock: str | None = None
     resolution_mm: float | None = None
+    save_parameters: str | Path | None = None
+    """Where the parameters that outlive the program are written at its end."""
     past_errors: bool = False
     """Whether a refused block is left out and the rest is run, so that what can be read is drawn."""
 
@@ -91,6 +93,38 @@ class RunSettings:
             UsageError: There is no such folder.
         """
         return Surroundings(self.root_of(program), self.keys, self.skip_levels)
+
+    def check_outputs(
+        self, program: Program, text: ProgramText, dialect: Dialect, control: ProgramControl | None
+    ) -> None:
+        """Check that what a program shows, and the parameters that outlive it, can be written where they should.
+
+        Raises:
+            UsageError: there is nothing to write, or the place is wrong.
+        """
+        self.check_screen(program, text, control)
+        self.check_parameters(program, dialect)
+
+    def check_parameters(self, program: Program, dialect: Dialect) -> None:
+        """Check that the parameters that outlive a program can be written where they should.
+
+        Raises:
+            UsageError: the dialect has none, or the place is wrong.
+        """
+        if self.save_parameters is None:
+            return
+        if dialect.language != "rs274":
+            raise UsageError(
+                f"programs in the dialect {dialect.name} keep no file of parameters",
+                hint="Leave --save-parameters out, or run a program of LinuxCNC.",
+            )
+        check_output(self.save_parameters, (".var",), "a file of parameters")
+        read: Iterable[object] = (program, self.machine, self.dialect)
+        keep_inputs(
+            self.save_parameters,
+            (each for each in read if isinstance(each, str | Path)),
+            "a file of parameters",
+        )
 
     def check_screen(self, program: Program, text: ProgramText, control: ProgramControl | None) -> None:
         """Check that what a program shows can be written where it should.

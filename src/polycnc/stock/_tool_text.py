@@ -36,7 +36,7 @@ def tool_number(remark: str) -> int | None:
 
 
 def tool_of_remark(remark: str, *, inch: bool = False) -> Tool | None:
-    """Return the tool that a remark describes, None if that cannot be told.
+    """Return the tool that a remark describes, None if that cannot be read.
 
     Read are `T1 D=10. CR=0. - ZMIN=-12. - flat end mill` and the like, and a size beside a word for a kind: `end mill
     10 mm`, `drill 8.5 mm`. With `inch` numbers without a unit are inches.

@@ -1,6 +1,6 @@
 """Cutter radius compensation (G40, G41, G42): a stage between interpreter and queue that shifts the path.
 
-The interpreter stays with programmed positions. A plane move can only be given out when the next one is
+The interpreter stays with programmed positions. A plane move can only be emitted when the next one is
 known, since the corner between them decides where it ends; so the stage holds back one plane move, and in
 order after it whatever does not move in the plane.
 """
@@ -197,7 +197,7 @@ class RadiusCompensation:
         self._hold.clear()
         self._move: Move | None = None  # the last plane move, programmed
         self._leg: Leg | None = None
-        self._pending = False  # that move has not been given out yet
+        self._pending = False  # that move has not been emitted yet
         self._lead_in = False  # that move is the lead-in
         self._at: XY | None = None  # compensated place where the pending move starts or all motion has ended
 
@@ -279,7 +279,7 @@ class RadiusCompensation:
         if not self._pending or self._leg is None:
             return []
         out: list[QueueItem] = []
-        self._give_out(end_offset(self._leg, self._offset), out)
+        self._emit_pending(end_offset(self._leg, self._offset), out)
         return out
 
     def push(self, item: QueueItem) -> list[QueueItem]:
@@ -333,7 +333,7 @@ class RadiusCompensation:
             raise _refusal("arc_too_small", item.line, arc=radius, tool=abs(self._offset))
         out: list[QueueItem] = []
         if self._pending and self._lead_in:
-            self._give_out(start_offset(leg, self._offset), out)
+            self._emit_pending(start_offset(leg, self._offset), out)
         elif self._leg is not None and self._move is not None:
             if self._pending:
                 self._corner(self._move, self._leg, item, leg, out)
@@ -343,19 +343,19 @@ class RadiusCompensation:
         return out
 
     def _corner(self, before: Move, leg: Leg, after: Move, next_leg: Leg, out: list[QueueItem]) -> None:
-        """Give out the pending move up to the corner, then what the corner itself needs."""
+        """Emit the pending move up to the corner, then what the corner itself needs."""
         rapid = _is_rapid(before) and _is_rapid(after)
         joint = join(leg, next_leg, self._offset, min(self._meet_cosine, 0.0) if rapid else self._meet_cosine)
         if joint is None:
             raise _refusal("no_intersection", after.line, tool=abs(self._offset))
         if joint.sweep_rad == 0.0:
-            self._give_out(joint.end, out)
+            self._emit_pending(joint.end, out)
         elif rapid:
             joint = chamfer(leg, next_leg, joint)
-            self._give_out(joint.end, out)
+            self._emit_pending(joint.end, out)
             self._straight(after, joint.start, out)
         else:
-            self._give_out(joint.end, out)
+            self._emit_pending(joint.end, out)
             self._round(before, leg, after, next_leg, joint, out)
 
     def _resume(self, before: Move, leg: Leg, after: Move, next_leg: Leg, out: list[QueueItem]) -> None:
@@ -373,8 +373,8 @@ class RadiusCompensation:
         else:
             self._round(before, leg, after, next_leg, joint, out)
 
-    def _give_out(self, end: XY, out: list[QueueItem]) -> None:
-        """Give out the pending move, ending at `end`, and what is held after it."""
+    def _emit_pending(self, end: XY, out: list[QueueItem]) -> None:
+        """Emit the pending move, ending at `end`, and what is held after it."""
         item, leg, start = self._move, self._leg, self._at
         assert item is not None
         assert leg is not None

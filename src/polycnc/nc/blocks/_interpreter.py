@@ -170,7 +170,7 @@ class Interpreter:
             self._queue.put(item)
 
     def drain(self, text: ProgramText, line: int) -> None:
-        """Let preparation stop after everything that has been given out; radius compensation holds nothing back.
+        """Let preparation stop after everything that has been emitted; radius compensation holds nothing back.
 
         Raises:
             ProgramError: the last move cannot be compensated.

@@ -50,7 +50,7 @@ def probe_move(block: BlockContext, g: GWord) -> list[QueueItem]:
 
 @carries_out(*PROBES)
 def probe(block: BlockContext, g: GWord) -> list[QueueItem]:
-    """Go straight at feed until the probe switches; the program is told where it does not."""
+    """Go straight at feed until the probe switches; the program is notified where it does not."""
     if block.after.modal.whole[FEED_MODE] == FEED_INVERSE_TIME:
         raise block.problem(f"G{g.code} with inverse time feed (G93)", "Select G94 first.", g.word)
     move = _measuring_move(block, g)

@@ -9,7 +9,7 @@ from polycnc.nc.text._program import ProgramText
 
 
 class MainBounds:
-    """The part of the program `main` that is executed; `language` is told of it."""
+    """The part of the program `main` that is executed; `language` is notified."""
 
     def __init__(self, main: Running, language: Language | None) -> None:
         self._main = main

@@ -22,7 +22,7 @@ from polycnc.nc.cpl._host import (
     SubProgram,
     Waiting,
 )
-from polycnc.nc.cpl._lexicon import RESERVED, STATEMENTS, UNUSED
+from polycnc.nc.cpl._lexicon import LEXICON, RESERVED, STATEMENTS, UNUSED
 from polycnc.nc.cpl._link_table import LinkTable, LinkTables, read_table, written_table
 from polycnc.nc.cpl._nc_lines import is_marked_typ2
 from polycnc.nc.cpl._permanent import PermanentMemory
@@ -36,6 +36,7 @@ __all__ = [
     "ERRORS",
     "FUNCTION_GROUPS",
     "KIND_NAMES",
+    "LEXICON",
     "OMITTED",
     "PAUSE",
     "RESERVED",

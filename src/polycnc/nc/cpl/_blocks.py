@@ -83,7 +83,7 @@ class CplLanguage:
         self._skip_levels = skip_levels
         self._bounds: Bounds | None = None
         self.shows_statements = stepping
-        """Whether statements are told to who runs the channel."""
+        """Whether statements are reported to who runs the channel."""
 
     def begin_between(self, first: int, last: int) -> None:
         """Let the main program that comes next look out for line `first`, and end after line `last` (0: its last)."""

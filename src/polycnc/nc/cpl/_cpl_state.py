@@ -64,7 +64,7 @@ class SavedCalled(NamedTuple):
 
 
 class SavedProgram(NamedTuple):
-    """One program that runs: where it stands, and what of its present statement is left to give out.
+    """One program that runs: where it stands, and what of its present statement is left to emit.
 
     `place` is the line of its Python, 0 before the first and None after the last. `wait` says since when (ms) it waits
     at a WAIT: None before that has begun, an empty tuple where it waits for nothing. `after` are the words of a block

@@ -107,7 +107,7 @@ class Linker:
         self.alone: frozenset[str] = frozenset()
         """The codes that call programs where they stand alone, as they were when `look_again` was called."""
         self.stepping = stepping
-        """Whether programs are compiled so that each of their lines is told."""
+        """Whether programs are compiled so that each of their lines is reported."""
         self._opened = opened
         self._tables = tables or NoTables()
         self._faulty: dict[str, str] = {}  # texts by file

@@ -1,4 +1,4 @@
-"""Custom macros become Python: one generator per program, which gives out blocks and calculates between them."""
+"""Custom macros become Python: one generator per program, which emits blocks and calculates between them."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""One execution of one macro program: what its Python gives out, and what it calls on the way."""
+"""One execution of one macro program: what its Python emits, and what it calls on the way."""
 
 from __future__ import annotations
 

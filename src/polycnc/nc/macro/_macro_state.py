@@ -35,7 +35,7 @@ class SavedItems(NamedTuple):
 class SavedSource(NamedTuple):
     """One execution of one program, which begins at `offset` of `text`, or was begun at byte `start`.
 
-    `errors` are still to be told. `place` is the line of its Python at which it stands, 0 before the first and None
+    `errors` are still to be reported. `place` is the line of its Python at which it stands, 0 before the first and None
     after the last, with its `names`. `level` is that of its local variables.
     """
 

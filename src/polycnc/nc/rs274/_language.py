@@ -47,7 +47,7 @@ class NgcLanguage:
     def attach(self, channel: Host) -> None:
         """Work for a channel: its positions and modal state are what parameters read."""
         self._channel = channel
-        self.parameters.attach(channel.state)
+        self.parameters.attach(channel.state, channel.machine)
         self._files.clear()
 
     def source(self, text: ProgramText, offset: int, line: int, arguments: object) -> RunningProgram | None:
@@ -69,6 +69,10 @@ class NgcLanguage:
         assert self._channel is not None
         return self._channel.machine
 
+    def kept_text(self) -> str:
+        """Return the text of a file with the parameters that outlive a program."""
+        return self.parameters.file_text()
+
     def loops(self) -> bool:
         """Tell whether programs go round for ever; that is not known here."""
         return False
@@ -88,7 +92,9 @@ class NgcLanguage:
             UsageError: the file cannot be read.
         """
         if name not in self._files:
-            path = sub_program_file(name, main, self._folders)
+            path = sub_program_file(
+                name, main, (*self._folders, *map(Path, self.machine.config.programs.folders))
+            )
             text = None if path is None else ProgramText.from_path(path)
             self._files[name] = None if text is None else self._of(text, 0)
             if text is not None:

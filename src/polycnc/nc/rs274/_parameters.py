@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import re
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
 
+from polycnc.machine import Machine
 from polycnc.nc.blocks._channel_state import ChannelState
 from polycnc.nc.blocks._tables import WORK_SYSTEMS
 from polycnc.nc.blocks._tool_offsets import TURNED_TIPS, offsets_of
@@ -11,11 +14,15 @@ from polycnc.nc.modal._modal import length_scale
 from polycnc.nc.rs274._functions import NumberError
 from polycnc.nc.rs274._inputs import ANSWER
 from polycnc.nc.rs274._known_names import KNOWN_NAMES
+from polycnc.nc.rs274._line import parameter_name
+from polycnc.nc.rs274._parameter_file import parameters_text, read_parameters
+from polycnc.units import MM_PER_INCH
 
 AXES = "XYZABCUVW"
 LAST_LOCAL = 30
 LAST_COMMON = 5000
 _LAST = 5602
+_OF_MACHINE = re.compile(r"_ini\[([^\]]*)\](.*)|_hal\[([^\]]*)\]")
 _REFERENCES = {5160 // 20: 1, 5180 // 20: 2}
 """Which reference position the parameters from #5161 and #5181 are."""
 
@@ -29,6 +36,9 @@ class Parameters:
         self.level = 0
         self._others: dict[int, float] = {}
         self._state: ChannelState | None = None
+        self._machine: Machine | None = None
+        self.filed: tuple[int, ...] = ()
+        """The numbers in the file that the programs began with."""
 
     def saved(self) -> tuple[dict[int, float], dict[int, float]]:
         """Return what programs have set by number: common parameters, and further ones."""
@@ -41,9 +51,46 @@ class Parameters:
         self.common[:] = [common.get(n, 0.0) for n in range(len(self.common))]
         self._others, self.names = dict(others), dict(names)
 
-    def attach(self, state: ChannelState) -> None:
-        """Read from the state of a channel."""
-        self._state = state
+    def attach(self, state: ChannelState, machine: Machine) -> None:
+        """Read from the state of a channel, and from its machine."""
+        first, self._state, self._machine = self._machine is None, state, machine
+        if first and (file := machine.config.programs.parameter_file) is not None:
+            self.load(read_parameters(file), inch=machine.config.programs.parameters_inch)
+
+    def load(self, values: Mapping[int, float], *, inch: bool) -> None:
+        """Begin with the parameters of a file, whose lengths are mm or inches.
+
+        Work offsets, the reference positions, the shift of G92 and the work offset in force are taken over too.
+        """
+        self.filed = tuple(values)
+        state = self.state
+        of_file = (MM_PER_INCH if inch else 1.0) / length_scale(state.modal)
+        for index, value in values.items():
+            if index <= LAST_LOCAL or 5400 <= index <= 5428 or index in (5210, 5220):
+                continue
+            at = self._axis_of(_place(index))
+            is_length = at is not None and not state.modal.rotary[at]
+            self.put(index, value * of_file if is_length else value, [])
+        coordinates = state.coordinates
+        if values.get(5210):
+            coordinates = replace(coordinates, shifted=True)
+        system = round(values.get(5220, 1.0))
+        if 1 < system <= len(WORK_SYSTEMS):
+            coordinates = coordinates.with_work_offset(0, WORK_SYSTEMS[system - 1])
+        state.place_zero(coordinates)
+
+    def file_text(self) -> str:
+        """Return the text of a file with the parameters of that one and all offsets, lengths in its units."""
+        assert self._machine is not None
+        inch = self._machine.config.programs.parameters_inch
+        to_file = length_scale(self.state.modal) / (MM_PER_INCH if inch else 1.0)
+
+        def value(index: int) -> float:
+            found = 0.0 if index <= LAST_LOCAL else self.get(index, [])
+            at = self._axis_of(_place(index))
+            return found * to_file if at is not None and not self.state.modal.rotary[at] else found
+
+        return parameters_text(self.filed, value)
 
     @property
     def state(self) -> ChannelState:
@@ -102,18 +149,47 @@ class Parameters:
         if (known := KNOWN_NAMES.get(name)) is not None:
             return float(known(self))
         if name.startswith(("_ini[", "_hal[")):
-            raise NumberError(f"#<{name}> is not there: no INI file and no HAL", "Set a parameter instead.")
+            if (value := self._of_machine(name)) is not None:
+                return value
+            table = "settings" if name.startswith("_ini[") else "pins"
+            raise NumberError(
+                f"#<{name}> is not there", f"Name it in [programs] {table} of the machine file."
+            )
         raise NumberError(f"#<{name}> has no value", "Set it first, or ask with EXISTS.")
 
     def name(self, name: str, value: float) -> None:
         """Set a global name."""
-        if name in KNOWN_NAMES:
+        if name in KNOWN_NAMES or name.startswith(("_ini[", "_hal[")):
             raise NumberError(f"#<{name}> can only be read")
         self.names[name] = value
 
     def exists(self, name: str, frame: dict[str, float]) -> float:
         """Tell whether a name has a value."""
-        return 1.0 if name in frame or name in self.names or name in KNOWN_NAMES else 0.0
+        known = name in frame or name in self.names or name in KNOWN_NAMES
+        return 1.0 if known or self._of_machine(name) is not None else 0.0
+
+    def _of_machine(self, name: str) -> float | None:
+        """Return what the machine has under a name like `_ini[section]name` or `_hal[pin]`, None if nothing."""
+        if self._machine is None or (found := _OF_MACHINE.fullmatch(name)) is None:
+            return None
+        programs = self._machine.config.programs
+        if found[1] is not None:
+            sections = [
+                values for section, values in programs.settings.items() if parameter_name(section) == found[1]
+            ]
+            return next(
+                (
+                    value
+                    for values in sections
+                    for key, value in values.items()
+                    if parameter_name(key) == found[2]
+                ),
+                None,
+            )
+        for point in self._machine.config.io.points:
+            if parameter_name(point) == found[3]:
+                return float(self._machine.io[point])
+        return next((value for pin, value in programs.pins.items() if parameter_name(pin) == found[3]), None)
 
     def _system(self, index: int) -> float:
         state = self.state
@@ -192,6 +268,15 @@ class Parameters:
     def _axis(self, place: int, vector: Sequence[float]) -> float:
         at = self._axis_of(place)
         return 0.0 if at is None else float(vector[at]) / self.unit(at)
+
+
+def _place(index: int) -> int:
+    """Return which axis a parameter belongs to, -1 for none."""
+    if 5221 <= index <= 5390:
+        return (index - 5221) % 20
+    if 5161 <= index <= 5189 or 5210 < index <= 5219:
+        return (index - 1) % (20 if index < 5200 else 10)
+    return -1
 
 
 def _index(number: float) -> int:

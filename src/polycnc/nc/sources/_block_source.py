@@ -11,7 +11,7 @@ block is prepared:
   possible. A source that knows `word_values` may leave words in there whose numbers are single variables.
 - `Drain`: preparation stops until everything before it has been executed; then `next` is called again. What a
   language reads in that next call (positions, system variables, answers of the PLC) is read after the drain.
-  Radius compensation gives out the move that it holds back.
+  Radius compensation emits the move that it holds back.
 - `CallProgram`: a sub-program with arguments, for calls that no M code makes. The language is asked for the
   source of the program that is called and gets the arguments. The caller's `next` is called again after the
   return.
@@ -205,6 +205,15 @@ class FastForwardLanguage(Language, Protocol):
 
     def moves_on(self) -> None:
         """Take note that something has happened since `loops` was asked."""
+        ...
+
+
+@runtime_checkable
+class KeepingLanguage(Language, Protocol):
+    """A language with values that outlive a program, in a file."""
+
+    def kept_text(self) -> str:
+        """Return the text of that file."""
         ...
 
 

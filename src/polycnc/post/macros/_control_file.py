@@ -289,7 +289,8 @@ def _all_flaws(flaws: list[tuple[str, Flaw]], places: _MacroPlaces) -> Configura
         also = [*also[:_SHOWN_FLAWS], f"and {len(also) - _SHOWN_FLAWS} more"]
     if also and hint:
         hint = f"on line {position.line}: {hint}"
-    return ConfigurationError(what, hint="\n".join([*also, hint]).strip("\n"), position=position)
+    parts = tuple(ConfigurationError(text, hint=more, position=place) for place, text, more in found)
+    return ConfigurationError(what, hint="\n".join([*also, hint]).strip("\n"), position=position, parts=parts)
 
 
 _VALUE = re.compile(r"""(?:[A-Za-z0-9_-]+|"[^"]*"|'[^']*')[ \t]*=[ \t]*('''|\"""|'|")(\r?\n)?""")

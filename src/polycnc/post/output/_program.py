@@ -1,7 +1,7 @@
 """Drive a control file's macros by the records of a tool path: each event calls its macro, once, in order.
 
 The driver keeps what events need to know of one another: where the tool is, feed, tool, spindle, cycle. What it
-gives to macros is told in `_events`. Moves and holes have files of their own.
+gives to macros is documented in `_events`. Moves and holes have files of their own.
 """
 
 from __future__ import annotations

@@ -100,15 +100,15 @@ class ClusterWorkers:
         return self._client
 
     @classmethod
-    def at(cls, address: str) -> ClusterWorkers:
-        """Return the workers of the scheduler at an address like tcp://10.0.0.7:8786.
+    def at(cls, address: str, wait_s: float = 10.0) -> ClusterWorkers:
+        """Return the workers of the scheduler at an address like tcp://10.0.0.7:8786, waiting `wait_s` for its answer.
 
         Raises:
             UsageError: dask.distributed is not installed, or nobody answers at the address.
         """
         distributed = distributed_module()
         try:
-            client = distributed.Client(address, timeout=10, set_as_default=False)
+            client = distributed.Client(address, timeout=wait_s, set_as_default=False)
         except (OSError, ValueError, TimeoutError) as error:
             raise UsageError(
                 f"no Dask scheduler answers at {address}: {error}",

@@ -142,6 +142,9 @@ class Facts:
     spindle: Mapping[str, float | bool] = field(default_factory=dict)
     offsets: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
     cycle_s: float | None = None
+    tools: Mapping[int, Mapping[str, float | str]] = field(default_factory=dict)
+    programs: Mapping[str, object] = field(default_factory=dict)
+    settings: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
 
 
 def others(settings: Settings, reasons: Mapping[str, str]) -> tuple[LeftOut, ...]:

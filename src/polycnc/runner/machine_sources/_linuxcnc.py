@@ -15,6 +15,7 @@ from polycnc.runner.machine_sources._facts import (
     others,
 )
 from polycnc.runner.machine_sources._ini import read_sections, sections_of
+from polycnc.runner.machine_sources._linuxcnc_files import numbers_of, programs_of, tools_of
 from polycnc.units import MM_PER_INCH
 
 CONTROL = "a LinuxCNC configuration"
@@ -25,8 +26,6 @@ PERIOD_NS = 1e6
 KINK_RATIO, GAP_CYCLES = 0.1, 4.0  # what the control takes where the file says nothing
 ARC_SHARE = LAST_SHARE = 0.5  # fixed in its planner
 LEFT_OUT = {
-    "RS274NGC.PARAMETER_FILE": "work offsets and variables are in that file",
-    "EMCIO.TOOL_TABLE": "tools are in that file",
     "TRAJ.ARC_BLEND_OPTIMIZATION_DEPTH": "the look-ahead is unlimited",
     "TRAJ.ARC_BLEND_RAMP_FREQ": "short moves speed up and slow down between their corners",
     "TRAJ.ARC_BLEND_ENABLE": "corners are rounded with arcs",
@@ -60,7 +59,9 @@ def read(text: str, file: str) -> Facts:
     kinematics = settings.get("KINS.KINEMATICS")
     period = settings.get("EMCMOT.SERVO_PERIOD")
     top = settings.get("SPINDLE_0.MAX_FORWARD_VELOCITY")
-    left = others(settings, LEFT_OUT)
+    programs, no_files = programs_of(settings, inch=to_mm != 1.0)
+    tools, no_tools = tools_of(settings, to_mm)
+    left = (*no_files, *no_tools, *others(settings, LEFT_OUT))
     if kinematics is not None and not kinematics.text.startswith("trivkins"):
         left = (LeftOut(f"kinematics {kinematics.text}", "axes and joints count as the same"), *left)
     return Facts(
@@ -70,6 +71,9 @@ def read(text: str, file: str) -> Facts:
         path=_path(settings, to_mm),
         spindle={} if top is None else {"max_rpm": top.positive},
         cycle_s=None if period is None else period.positive * 1e-9,
+        tools=tools,
+        programs=programs,
+        settings=numbers_of(settings),
     )
 
 

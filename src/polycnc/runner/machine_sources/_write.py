@@ -47,6 +47,31 @@ def _lines(facts: Facts, name: str, source: str) -> Iterator[str]:
             inside = ", ".join(f"{axis} = {_number(value)}" for axis, value in values.items())
             yield f"{offset} = {{ {inside} }}"
 
+    yield from _tools(facts)
+    yield from _programs(facts)
+
+
+def _tools(facts: Facts) -> Iterator[str]:
+    for number, tool in sorted(facts.tools.items()):
+        yield ""
+        yield f"[tools.{number}]"
+        for key, value in tool.items():
+            yield f"{key} = {json.dumps(_one_line(value)) if isinstance(value, str) else _number(value)}"
+
+
+def _programs(facts: Facts) -> Iterator[str]:
+    if facts.programs:
+        yield ""
+        yield "[programs]"
+        for key, value in facts.programs.items():
+            yield f"{key} = {json.dumps(value)}"
+    if facts.settings:
+        yield ""
+        yield "[programs.settings]"
+        for section, values in facts.settings.items():
+            inside = ", ".join(f"{json.dumps(name)} = {_number(value)}" for name, value in values.items())
+            yield f"{json.dumps(section)} = {{ {inside} }}"
+
 
 def _axis(axis: AxisFacts) -> Iterator[str]:
     unit = axis.unit

@@ -126,6 +126,12 @@ def _add_figures(app: FastAPI, machines: dict[str, ServedMachine]) -> None:
     registry = CollectorRegistry()
     requests = Counter("polycnc_http_requests", "Requests by status.", ["status"], registry=registry)
     time_s = Gauge("polycnc_machine_time_seconds", "The time of a machine.", ["machine"], registry=registry)
+    late_s = Gauge(
+        "polycnc_machine_lateness_seconds",
+        "The worst lateness of a machine's clock since it was asked.",
+        ["machine"],
+        registry=registry,
+    )
 
     @app.middleware("http")
     async def count(request: Request, call_next):  # type: ignore[no-untyped-def]
@@ -144,6 +150,7 @@ def _add_figures(app: FastAPI, machines: dict[str, ServedMachine]) -> None:
     async def metrics() -> Response:
         for each in machines.values():
             time_s.labels(each.name).set(each.served.clock.now_s)
+            late_s.labels(each.name).set(each.keeper.take_lateness_s())
         return Response(generate_latest(registry), media_type="text/plain; version=0.0.4")
 
 

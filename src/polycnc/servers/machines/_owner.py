@@ -14,7 +14,7 @@ from typing import Any, Protocol, TypeVar
 from polycnc.machine import Clock, Host, HostError, Pace, Wall
 
 R = TypeVar("R")
-_BUSY_BEAT_S = 0.05
+_BUSY_BEAT_S = 0.1  # as watches look; whoever asks, or is told more often, lets time pass himself
 _IDLE_BEAT_S = 1.0
 _MOST_CYCLES = 20_000  # that are caught up with in one go
 _MOST_LATE_S = 0.5

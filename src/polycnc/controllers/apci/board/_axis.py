@@ -47,7 +47,7 @@ _STATUS_BITS = tuple(
 
 
 class Axis:
-    """Axis `index` of a board: `inputs` returns the board's, `units_changed` is told when its units are others."""
+    """Axis `index` of a board: `inputs` returns the board's, `units_changed` is called when its units change."""
 
     jvl = Parameter("jvl", 1)
     jtvl = Parameter("jtvl", 1)

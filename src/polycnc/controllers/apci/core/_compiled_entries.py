@@ -29,7 +29,7 @@ from polycnc.kernel import SHORT_JUMP, KernelState, entry, profile_duration, sto
 def begin_move(
     b: BoardState, e: int, axes: Whole, weight: Floats, ac: float, vl: float, tvl: float, speed: float
 ) -> None:
-    """Make entry `e`, which has its path, a move of `axes`, and let them leave what they do and go along it."""
+    """Make entry `e`, which has its path, a move of `axes`, and let them leave what they do and follow it."""
     fill_move(b, e, axes, weight, ac, vl, tvl)
     for k in range(axes.shape[0]):
         i = axes[k]
@@ -113,7 +113,7 @@ def brake_on_path(b: BoardState, i: int, rate: float) -> None:
 
 @entry
 def aim_at_velocity(b: BoardState, e: int, tvl: float) -> None:
-    """Give entry `e` another target velocity, also where axes already go along it."""
+    """Give entry `e` another target velocity, also where axes already follow it."""
     this = b.entry[e]
     this["tvl"] = min(tvl, this["vl"])
     this["join"] = max(this["tvl"], 0.0)

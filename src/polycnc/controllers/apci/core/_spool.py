@@ -222,7 +222,7 @@ def _begin_move(b: BoardState, i: int, e: int, speed: float, lead: float) -> Non
 
 @compiled
 def start_move(b: BoardState, i: int, e: int, speed: float, lead: float) -> None:
-    """Let axis `i` go along entry `e`, entered with path speed `speed`, `lead` seconds ago."""
+    """Let axis `i` follow entry `e`, entered with path speed `speed`, `lead` seconds ago."""
     row, entry = b.axis[i], b.entry[e]
     row["motion"] = MOVE
     row["entry"] = e

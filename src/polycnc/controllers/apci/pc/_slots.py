@@ -16,7 +16,7 @@ from polycnc.errors import UsageError
 
 REVISION = "V2.5.3.100"
 
-# Faults of the hardware in the order in which they are met; the library finds all other codes by itself.
+# Faults of the hardware in the order in which they show; the library finds all other codes by itself.
 FAULTS_BEFORE_RESET = (BootCode.DEVICE_ADDRESSES, BootCode.FLASH_ACCESS, BootCode.FLASH_SIZE)
 FAULTS_IN_BOOTING = (
     BootCode.BAD_ELF,

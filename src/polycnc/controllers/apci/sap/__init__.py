@@ -9,6 +9,7 @@ from polycnc.controllers.apci.sap._commands import AXIS_QUALIFIERS, COMMANDS, SY
 from polycnc.controllers.apci.sap._compile import check, compile_program
 from polycnc.controllers.apci.sap._faults import FAULTS
 from polycnc.controllers.apci.sap._host import BUFFER_BYTES, Call, Host
+from polycnc.controllers.apci.sap._lexer import KEYWORDS, NAME, SourceText, tokens
 from polycnc.controllers.apci.sap._program import TASKS, Program
 from polycnc.controllers.apci.sap._task import TaskStatus
 from polycnc.controllers.apci.sap._tasks import BUDGET, Tasks
@@ -19,16 +20,20 @@ __all__ = [
     "BUFFER_BYTES",
     "COMMANDS",
     "FAULTS",
+    "KEYWORDS",
+    "NAME",
     "SYSTEM_VARIABLES",
     "TASKS",
     "Call",
     "CncFileError",
     "Host",
     "Program",
+    "SourceText",
     "TaskStatus",
     "Tasks",
     "check",
     "compile_program",
     "read_cnc",
+    "tokens",
     "write_cnc",
 ]

@@ -1,7 +1,7 @@
 """Tasks of a board that have their turns in the compiled scan: bring programs there, and back for what they do.
 
 A task is in one place at a time: at home, in its Python object, or in the compiled scan (`core._turns`). It goes there
-when it is to have a turn, and comes home when it needs Python or somebody asks for its state.
+when it is to have a turn, and is reclaimed when it needs Python or somebody asks for its state.
 """
 
 from __future__ import annotations
@@ -210,7 +210,7 @@ class CompiledTurns:
         if not new:
             return
         for task in self._tasks:
-            task.come_home()
+            task.reclaim_state()
         for task in new:
             assert task.program is not None
             translation = translate(task.program, self._host)

@@ -123,7 +123,7 @@ class Task:
 
     def end(self, stop: bool) -> None:
         """End the program: to be continued (`stop`), or for good."""
-        self.come_home()
+        self.reclaim_state()
         if self.state is State.RUNNING or not stop:
             self.state = State.STOPPED if stop else State.IDLE
             self._by_writeln = False
@@ -138,14 +138,14 @@ class Task:
         """Return whether the task is not to run any further."""
         return self.state is not State.RUNNING
 
-    def come_home(self) -> None:
+    def reclaim_state(self) -> None:
         """Have the state of the program in the task itself."""
         if self.away is not None:
             away, self.away = self.away, None
             away.reclaim()
 
     def _reset(self) -> None:
-        self.come_home()
+        self.reclaim_state()
         self.state = State.IDLE
         self.waiting = self._waiting_before = None
         self.error = ""
@@ -162,7 +162,7 @@ class Task:
 
         The `rest` of a turn begins in the middle of the program, without a look at events and waits.
         """
-        self.come_home()
+        self.reclaim_state()
         if self.state is not State.RUNNING:
             return
         at = self.next
@@ -309,7 +309,7 @@ class Task:
 
     def save(self) -> dict[str, Any]:
         """Return program and state as plain data."""
-        self.come_home()
+        self.reclaim_state()
         waits = (self.waiting, self._waiting_before)
         return {
             "program": None if self.program is None else write_cnc(self.program),

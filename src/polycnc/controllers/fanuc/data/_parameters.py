@@ -33,7 +33,7 @@ class Change:
 class Parameters:
     """Keep the values; a change is durable when the call returns, several changes come all or not at all.
 
-    `bound` are those that live elsewhere; `on_change` is told the rows that were changed, after they are durable.
+    `bound` are those that live elsewhere; `on_change` gets the rows that were changed, after they are durable.
     """
 
     def __init__(

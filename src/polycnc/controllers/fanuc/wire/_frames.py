@@ -74,7 +74,7 @@ class Frame:
 
 
 class FrameReader:
-    """Collect bytes as they come and give out whole frames; a body has at most `most_body` bytes."""
+    """Collect bytes as they come and return whole frames; a body has at most `most_body` bytes."""
 
     def __init__(self, most_body: int = 0xFFFF) -> None:
         self._most_body = most_body

@@ -110,7 +110,7 @@ def _set_arc(s: CardState, g: int) -> bool:
 
 @compiled
 def _set_segment(s: CardState, g: int) -> bool:
-    """Take the segment at the head of the queue into work; False if there is nothing to go along."""
+    """Take the segment at the head of the queue into work; False if there is nothing to follow."""
     m, n, o, f = s.memory, s.axis.shape[0], g * addr.SPACE, PFIFO1 + g
     count = cell(s, f, HEADER + 2)
     if cell(s, f, HEADER + 1) != 0:

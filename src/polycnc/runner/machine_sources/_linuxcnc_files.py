@@ -1,0 +1,143 @@
+"""What a LinuxCNC INI file names beside it: folders of programs, parameters, tools; and its own numbers."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+
+from polycnc.errors import ConfigurationError, SourcePosition
+from polycnc.runner.machine_sources._facts import LeftOut, Settings
+
+LARGEST_BYTES = 1_000_000
+_WORD = re.compile(r"([A-Za-z])[ \t]*([-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+))")
+_NUMBER = re.compile(r"[-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][-+]?[0-9]{1,3})?")
+_TIPS = (0, 4, 3, 2, 1, 5, 8, 7, 6, 9)
+"""The tip of a tool of the machine file by Q. Source: LinuxCNC user manual, "Lathe User Information"."""
+_FOLDERS = ("DISPLAY.PROGRAM_PREFIX", "RS274NGC.SUBROUTINE_PATH")
+_MOST_SETTINGS = 10_000
+
+Tool = dict[str, float | str]
+
+
+def programs_of(settings: Settings, *, inch: bool) -> tuple[dict[str, object], tuple[LeftOut, ...]]:
+    """Return the table `programs` of a machine file, and what of it is not there."""
+    folder = Path(settings.file).parent
+    left: list[LeftOut] = []
+    programs: dict[str, object] = {}
+    folders: list[str] = []
+    for name in _FOLDERS:
+        entry = settings.get(name)
+        for part in [] if entry is None else entry.text.split(":"):
+            path = _beside(folder, part)
+            if path is not None and path.is_dir():
+                folders.append(str(path.resolve()))
+            elif part.strip():
+                left.append(LeftOut(f"{name} = {part.strip()}", "there is no such folder"))
+    if folders:
+        programs["folders"] = tuple(dict.fromkeys(folders))
+    if (entry := settings.get("RS274NGC.PARAMETER_FILE")) is not None:
+        path = _beside(folder, entry.text)
+        if path is not None and path.is_file():
+            programs["parameter_file"] = str(path.resolve())
+            if inch:
+                programs["parameters_inch"] = True
+        else:
+            left.append(LeftOut(f"RS274NGC.PARAMETER_FILE = {entry.text}", "there is no such file"))
+    return programs, tuple(left)
+
+
+def numbers_of(settings: Settings) -> dict[str, dict[str, float]]:
+    """Return every number of the file by section and name, which programs can read."""
+    found: dict[str, dict[str, float]] = {}
+    for name, entry in list(settings.entries.items())[:_MOST_SETTINGS]:
+        section, _, key = name.partition(".")
+        if _NUMBER.fullmatch(entry.text) and math.isfinite(value := float(entry.text)):
+            found.setdefault(section, {})[key] = value
+    return found
+
+
+def tools_of(settings: Settings, to_mm: float) -> tuple[dict[int, Tool], tuple[LeftOut, ...]]:
+    """Return the tools of the table that the file names, and what of them has no place.
+
+    Raises:
+        ConfigurationError: a line of the table is wrong.
+    """
+    entry = settings.get("EMCIO.TOOL_TABLE")
+    if entry is None:
+        return {}, ()
+    path = _beside(Path(settings.file).parent, entry.text)
+    try:
+        if path is None or not path.is_file():
+            raise OSError
+        with path.open("rb") as file:
+            content = file.read(LARGEST_BYTES + 1)
+    except (OSError, ValueError):
+        return {}, (LeftOut(f"EMCIO.TOOL_TABLE = {entry.text}", "there is no such file"),)
+    if len(content) > LARGEST_BYTES:
+        raise entry.error(f"the tool table {path} is too large", "Name another file.")
+    tools: dict[int, Tool] = {}
+    left: list[LeftOut] = []
+    for number, line in enumerate(content.decode("utf-8", "replace").splitlines(), 1):
+        words, text = _words(line, SourcePosition(str(path), number, 1, line))
+        if words:
+            index, tool, others = _tool(words, text, to_mm, SourcePosition(str(path), number, 1, line))
+            tools[index] = tool
+            left += [LeftOut(f"{letter} of tool {index}", "tools shift X and Z") for letter in others]
+    return tools, tuple(left)
+
+
+def _words(line: str, position: SourcePosition) -> tuple[dict[str, float], str]:
+    """Return the words of a line, and its remark."""
+    body, _, text = line.partition(";")
+    words = {found[1].upper(): float(found[2]) for found in _WORD.finditer(body)}
+    if _WORD.sub("", body).strip():
+        raise ConfigurationError(
+            "this is no tool",
+            position=position,
+            hint="A line of a tool table is like: T3 P3 Z12.5 D6 ; end mill",
+        )
+    return words, text.strip()
+
+
+def _tool(
+    words: Mapping[str, float], text: str, to_mm: float, position: SourcePosition
+) -> tuple[int, Tool, Iterator[str]]:
+    """Return the number of a tool, its data, and the letters that have no place."""
+
+    def whole(letter: str, most: int) -> int:
+        value = words.get(letter, -1.0 if letter == "T" else 0.0)
+        if value != round(value) or not 0 <= value <= most:
+            raise ConfigurationError(
+                f"{letter} of a tool is a whole number from 0 to {most}",
+                position=position,
+                hint="Correct the line.",
+            )
+        return int(value)
+
+    tool: Tool = {}
+    for key, letter, scale in (
+        ("length_mm", "Z", to_mm),
+        ("x_mm", "X", to_mm),
+        ("radius_mm", "D", to_mm / 2.0),
+    ):
+        if value := words.get(letter, 0.0):
+            tool[key] = (abs(value) if letter == "D" else value) * scale
+    if tip := _TIPS[whole("Q", 9)]:
+        tool["tip"] = tip
+    if text:
+        tool["description"] = text
+    return whole("T", 99_999), tool, (each for each in "YABCUVWIJ" if words.get(each, 0.0))
+
+
+def _beside(folder: Path, name: str) -> Path | None:
+    """Return a path that an INI file names, relative to its folder; None where no file can have that name."""
+    name = name.strip()
+    if not name or "\0" in name:
+        return None
+    try:
+        path = Path(name).expanduser()
+    except RuntimeError:
+        return None
+    return path if path.is_absolute() else folder / path
