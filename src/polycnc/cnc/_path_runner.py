@@ -104,14 +104,7 @@ class PathRunner:
     @property
     def to_go(self) -> Floats:
         """What is left to the end of the executed block, by the place of the axis; 0 where none is being executed."""
-        row = self.row
-        here = self.machine.state.paths.position[self.path]
-        if row["state"] not in (kernel.RUNNING, kernel.HELD):
-            return np.zeros_like(here)
-        last = self.feed.blocks.block_end(int(row["head"])) - 1
-        k = int(row["base"]) + last % int(row["capacity"])
-        left: Floats = self.machine.state.seg.end[k] - here
-        return left
+        return _way_left(self.machine, self.path, self.feed)
 
     # ------------------------------------------------------------------ time
 
@@ -340,3 +333,15 @@ class PathRunner:
         self.moment.state = RunState.ALARM
         self.moment.hold = True
         self.path_hold.apply()
+
+
+def _way_left(machine: Machine, path: int, feed: PathFeed) -> Floats:
+    """Return what is left to the end of the executed block, by the place of the axis."""
+    row = feed.row
+    here = machine.state.paths.position[path]
+    if row["state"] not in (kernel.RUNNING, kernel.HELD):
+        return np.zeros_like(here)
+    last = feed.blocks.block_end(int(row["head"])) - 1
+    k = int(row["base"]) + last % int(row["capacity"])
+    left: Floats = machine.state.seg.end[k] - here
+    return left
