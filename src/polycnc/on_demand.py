@@ -5,6 +5,7 @@ from __future__ import annotations
 import sys
 from collections.abc import Callable
 from importlib import import_module
+from types import ModuleType
 from typing import Any
 
 
@@ -14,8 +15,7 @@ def names_on_demand(package: str) -> Callable[[str], Any]:
 
     def get(name: str) -> Any:
         if not homes:
-            loader: Any = sys.modules[package].__loader__
-            homes.update(_homes(loader.get_source(package)))
+            homes.update(_homes(_source(sys.modules[package])))
         if name not in homes:
             raise AttributeError(f"module '{package}' has no attribute '{name}'")
         found = getattr(import_module(homes[name]), name)
@@ -23,6 +23,13 @@ def names_on_demand(package: str) -> Callable[[str], Any]:
         return found
 
     return get
+
+
+def _source(module: ModuleType) -> str:
+    """Return the source of a module, whatever has loaded it: pytest's loader, for one, cannot say."""
+    import linecache  # from an archive too
+
+    return "".join(linecache.getlines(str(module.__file__), vars(module)))
 
 
 def _homes(source: str) -> dict[str, str]:

@@ -12,6 +12,7 @@ from typing import Any
 
 import pytest
 
+from support.command import environment
 from support.pages import fences
 
 REPOSITORY = Path(__file__).parents[2]
@@ -54,6 +55,37 @@ def test_the_wheel_has_everything_that_is_no_code(built: list[Path]) -> None:
     }
     assert wanted - names == set()
     assert "polycnc/conformance/data/not_applicable.toml" in names
+
+
+PLUGIN_CONFTEST = """
+import sys
+
+def pytest_collection_finish():
+    print("loaded:", *sorted(name for name in sys.modules if name.startswith(("polycnc", "numba", "numpy"))))
+"""
+PLUGIN_TEST = """
+def test_card(card):
+    card.advance(17)
+    assert card.axes == 7
+"""
+
+
+def test_pytest_finds_the_plugin_of_the_wheel_and_loads_no_more_than_it_needs(
+    built: list[Path], tmp_path: Path
+) -> None:
+    from zipfile import ZipFile
+
+    ZipFile(built[0]).extractall(tmp_path / "site")
+    (tmp_path / "conftest.py").write_text(PLUGIN_CONFTEST, "utf-8")
+    (tmp_path / "test_card.py").write_text(PLUGIN_TEST, "utf-8")
+    command = [sys.executable, "-m", "pytest", "-s", "-W", "error", "-p", "no:cacheprovider", "test_card.py"]
+    surroundings = environment(PYTHONPATH=str(tmp_path / "site"), POLYCNC_COMPILE_AT_ONCE="")
+    done = subprocess.run(
+        command, cwd=tmp_path, env=surroundings, capture_output=True, text=True, check=False
+    )
+    assert "loaded: polycnc polycnc.on_demand polycnc.testing\n" in done.stdout, done.stdout + done.stderr
+    assert "polycnc: card" in done.stdout
+    assert "(17 cycles)" in done.stdout
 
 
 def test_the_image_is_made_of_steps_that_can_be_done_without_docker() -> None:

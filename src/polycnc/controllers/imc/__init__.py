@@ -5,5 +5,6 @@
 
 from polycnc.controllers.imc.card._card import Card
 from polycnc.controllers.imc.card._config import CardConfig, load_card, parse_card
+from polycnc.controllers.imc.card._status import CardStatus
 
-__all__ = ["Card", "CardConfig", "load_card", "parse_card"]
+__all__ = ["Card", "CardConfig", "CardStatus", "load_card", "parse_card"]
