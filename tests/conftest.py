@@ -19,7 +19,7 @@ from polycnc import conformance
 REPOSITORY = Path(__file__).resolve().parents[1]
 
 os.environ["MPLBACKEND"] = "Agg"
-settings.register_profile("polycnc", deadline=None, derandomize=True, database=None)
+settings.register_profile("polycnc", deadline=None, max_examples=60, derandomize=True, database=None)
 settings.load_profile("polycnc")
 
 # What tests may lack: a word of the reason they give, and what to do about it.

@@ -85,7 +85,7 @@ def test_random_calls(seed: int) -> None:
     names = sorted(set(fwlib.FUNCTIONS) - LEFT_OUT)
     answers = set()
     before = state(control)
-    for _ in range(1500):
+    for _ in range(700):
         function = fwlib.FUNCTIONS[chance.choice(names)]
         given = [handle if each.name == "FlibHndl" else argument(chance, each.c) for each in function.passed]
         try:

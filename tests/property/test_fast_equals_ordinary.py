@@ -53,7 +53,7 @@ def assert_same(fast: Channel, ordinary: Channel) -> None:
 
 
 @pytest.mark.parametrize("dialect", DIALECTS)
-@settings(max_examples=70, suppress_health_check=[HealthCheck.too_slow])
+@settings(max_examples=40, suppress_health_check=[HealthCheck.too_slow])
 @given(program=programs)
 @example(program="G2 X10 I5\nG91 G3 X10 J-0 I5\nX1\n")
 @example(program="G1 F500\n X0 F100\nG92 X1 Y2\nG91 G2 X2 I1\n")

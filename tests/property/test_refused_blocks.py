@@ -27,7 +27,7 @@ def refused_lines(channel: Channel) -> set[int]:
 
 
 @pytest.mark.parametrize("dialect", DIALECTS)
-@settings(max_examples=70, suppress_health_check=[HealthCheck.too_slow])
+@settings(max_examples=40, suppress_health_check=[HealthCheck.too_slow])
 @given(program=programs)
 def test_without_its_refused_blocks_a_program_does_the_same(dialect: str, program: str) -> None:
     whole = prepare(program, config=FIVE, dialect=dialect, collect_errors=True)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Sequence
 
 import numpy as np
@@ -68,8 +69,9 @@ def scans_for(duration_s: float) -> int:
     return int(np.ceil(duration_s / SCAN_S - 1e-6))
 
 
+@functools.cache
 def integrated(
-    distance: float, first: float, top: float, last: float, up: float, down: float, step_s: float = 5e-6
+    distance: float, first: float, top: float, last: float, up: float, down: float, step_s: float = 2e-6
 ) -> tuple[Floats, Floats, Floats]:
     """Return times, positions and velocities of a profile, integrated in small steps from the manual's words.
 

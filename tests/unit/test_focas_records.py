@@ -6,7 +6,7 @@ import math
 from typing import Any
 
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from polycnc.controllers.fanuc.library._remote import _POSITIONS, READINGS
@@ -51,6 +51,7 @@ def _value_of(part: Part) -> st.SearchStrategy[Any]:
 
 
 @pytest.mark.parametrize("declared", DECLARED)
+@settings(max_examples=30)
 @given(data=st.data())
 def test_what_is_packed_is_unpacked(declared: str, data: st.DataObject) -> None:
     made = record(declared)

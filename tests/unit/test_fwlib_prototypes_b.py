@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import functools
 import re
 
 import pytest
 
-from polycnc.conformance import load_conformance
+from polycnc.conformance import Row, load_conformance
 from polycnc.controllers.fanuc import PowerMate, fwlib
 from polycnc.controllers.fanuc.fwlib import EW
 
@@ -21,10 +22,15 @@ NAMES = (
 )  # fmt: skip
 
 
+@functools.cache
+def _rows() -> dict[str, Row]:
+    return {row.id: row for row in load_conformance().rows("fanuc")}
+
+
 @pytest.mark.covers("fanuc.common.decl")
 @pytest.mark.parametrize("name", NAMES)
 def test_a_prototype_is_the_manuals(name: str) -> None:
-    row = next(row for row in load_conformance().rows("fanuc") if row.id == f"fanuc.{name}")
+    row = _rows()[f"fanuc.{name}"]
     printed = re.sub(r"FWLIBAPI |WINAPI |;", "", row.signature)
     if name == "cnc_rdcurrent":
         printed = printed.replace("short *crrnt", "long *crrnt")  # as its sample and the header have it

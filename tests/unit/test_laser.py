@@ -266,3 +266,24 @@ def test_each_cycle_of_a_long_program_has_the_power_that_its_line_says(seed: int
     waits = np.array([line.startswith("G4") for line in lines])[at]
     expected = np.where(rapids[at] & ~waits, 0.0, np.minimum(speed[at] * follows, 900.0))
     np.testing.assert_allclose(power_of(trace), expected, atol=1e-9)
+
+
+def test_m67_is_a_power_that_stops_nothing_and_m68_one_at_rest() -> None:
+    words = "M3 S200\nG1 X10 F3000\n{}X20\n{}X30\nM2\n"
+    trace = runner.run(words.format("M67 E0 Q450\n", "M67 E0 Q700\n"), LASER, "linuxcnc", trace=True).trace
+    plain = runner.run(words.format("", ""), LASER, "linuxcnc", trace=True).trace
+    np.testing.assert_array_equal(trace.setpoint, plain.setpoint)
+    places = [int(np.abs(trace.setpoint[:, 0] - x).argmin()) for x in (7.0, 13.0, 27.0)]
+    assert power_of(trace)[places].tolist() == [200.0, 450.0, 700.0]
+    at_rest = runner.run(words.format("M68 E0 Q450\n", ""), LASER, "linuxcnc", trace=True)
+    assert [(each.line, each.word) for each in at_rest.events][:1] == [(3, "M68 Q450 E0")]
+    assert len(at_rest.trace) == len(plain) + 10  # braking from 50 mm/s and on again, with 5000 mm/s2
+    assert power_of(at_rest.trace)[int(np.abs(at_rest.trace.setpoint[:, 0] - 13.0).argmin())] == 450.0
+
+
+def test_other_outputs_and_machines_keep_m67_as_a_function() -> None:
+    program = "G1 X1 F300\nM67 E{} Q20\nX2\nM2\n"
+    for config, output in ((LASER, 1), (DRY, 0)):
+        listed = moves(program.format(output), config=config, dialect="linuxcnc")
+        assert f"M67 Q20 E{output}" in listed
+    assert refusal("G1 X1 F300\nM67 E0\n", config=LASER, dialect="linuxcnc") == "2:1: M67 without Q"

@@ -221,6 +221,7 @@ def test_words_that_only_begin_like_if_are_text() -> None:
     ]
 
 
+@pytest.mark.covers("post.seq.output")
 @pytest.mark.covers("post.macro.elements", "post.macro.line_is_block")
 def test_all_kinds_of_elements_in_one_macro() -> None:
     macro = "IF(T==3)\n@1@(TOOL )!M06!$TOOLCHANGE$<S=50*2>\"<>\"'/,-200'$S$\n@0@&S&$S$\nENDIF"

@@ -104,14 +104,7 @@ class PathRunner:
     @property
     def to_go(self) -> Floats:
         """What is left to the end of the executed block, by the place of the axis; 0 where none is being executed."""
-        row = self.row
-        here = self.machine.state.paths.position[self.path]
-        if row["state"] not in (kernel.RUNNING, kernel.HELD):
-            return np.zeros_like(here)
-        last = self.feed.blocks.block_end(int(row["head"])) - 1
-        k = int(row["base"]) + last % int(row["capacity"])
-        left: Floats = self.machine.state.seg.end[k] - here
-        return left
+        return _way_left(self.machine, self.path, self.feed)
 
     # ------------------------------------------------------------------ time
 
@@ -231,8 +224,7 @@ class PathRunner:
         record = self.executed_tag
         self.take_switch()
         self.events.pass_stop()
-        self.moment.hold = False
-        self.moment.state = RunState.ACTIVE
+        self.moment.hold, self.moment.state = False, RunState.ACTIVE
         if within:
             self._step_from(step, record)
         else:
@@ -301,14 +293,11 @@ class PathRunner:
     def look(self) -> None:
         """See whether the path has come to an end, or to the end of a block."""
         row = self.row
+        ready = row["state"] == kernel.READY and not self.moment.unanswered
         if self.moment.dropping:
             if self.at_rest:
                 self._drop()
-        elif (
-            self.moment.state is RunState.ACTIVE
-            and row["state"] == kernel.READY
-            and not self.moment.unanswered
-        ):
+        elif self.moment.state is RunState.ACTIVE and ready:
             if row["head"] >= row["limit"]:
                 self._stop_at_block()
             elif self.feed.begins_with_mark and self._stand_at_marks():
@@ -334,12 +323,9 @@ class PathRunner:
         kernel.drop_queue(state.seg, state.paths, self.path)
         self.channel.writer.clear()
         self.feed.clear()
-        self.moment.dropping = False
-        self.moment.hold = False
-        self.moment.stop = None
-        self.moment.unanswered = self.moment.barrier = False
-        self.moment.probing = None
-        self.moment.met = None
+        moment = self.moment
+        moment.dropping = moment.hold = moment.unanswered = moment.barrier = False
+        moment.stop = moment.probing = moment.met = None
         self.path_hold.apply()
 
     def _stop_by(self, text: str, code: str) -> None:
@@ -347,3 +333,15 @@ class PathRunner:
         self.moment.state = RunState.ALARM
         self.moment.hold = True
         self.path_hold.apply()
+
+
+def _way_left(machine: Machine, path: int, feed: PathFeed) -> Floats:
+    """Return what is left to the end of the executed block, by the place of the axis."""
+    row = feed.row
+    here = machine.state.paths.position[path]
+    if row["state"] not in (kernel.RUNNING, kernel.HELD):
+        return np.zeros_like(here)
+    last = feed.blocks.block_end(int(row["head"])) - 1
+    k = int(row["base"]) + last % int(row["capacity"])
+    left: Floats = machine.state.seg.end[k] - here
+    return left

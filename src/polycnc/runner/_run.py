@@ -158,8 +158,7 @@ def run_program(
         AlarmError: with `check`, the machine stopped.
         UsageError: no such file, machine or dialect.
     """
-    text = program_text(program)
-    config = load_machine(settings.machine)
+    text, config = program_text(program), load_machine(settings.machine)
     collector = TraceCollector(config, settings.servo) if trace else None
     tagged = [sink for sink in (collector.add_tagged if collector else None, tagged_rows) if sink is not None]
     form, machining = settings.form(), None

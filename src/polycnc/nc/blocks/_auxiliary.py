@@ -33,7 +33,10 @@ _BEFORE_MOTION = (
     MAction.SET_TOOL,
     MAction.AUXILIARY,
     MAction.AUXILIARY_WORDS,
+    MAction.OUTPUT_IN_STEP,
+    MAction.OUTPUT_AT_ONCE,
 )
+_OUTPUTS = (MAction.OUTPUT_IN_STEP, MAction.OUTPUT_AT_ONCE)
 _AFTER_MOTION = (MAction.PROGRAM_STOP, MAction.OPTIONAL_STOP, MAction.PROGRAM_END)
 _STOPS = {MAction.PROGRAM_STOP: Stop.PROGRAM, MAction.OPTIONAL_STOP: Stop.OPTIONAL}
 _DIRECTION = {**SPINDLE_SENSES, MAction.SPINDLE_ORIENT: 0}
@@ -193,6 +196,15 @@ def _function(block: BlockContext, m: MWord) -> tuple[Wait, ...]:
     if m.action in SPINDLE_SENSES and _has_laser(block):
         block.after.spindle = replace(block.after.spindle, direction=SPINDLE_SENSES[m.action], oriented=False)
         return ()
+    output = block.words.by_letter.get("E")
+    if m.action in _OUTPUTS and _has_laser(block) and output is not None and output.value == 0.0:
+        power = block.words.by_letter.get("Q")
+        if power is None:
+            raise block.problem(f"M{m.code} without Q", "Add Q and the power of the laser.", m.word)
+        _set_speed(block, power)
+        if m.action is MAction.OUTPUT_IN_STEP:
+            block.words.used |= {"E", "Q"}
+            return ()
     return (_wait(block, m),)
 
 
@@ -211,7 +223,7 @@ def _wait(block: BlockContext, m: MWord) -> Wait:
         block.after.tool = block.after.selected_tool = whole_number(number, "a tool number", block.problem)
         tool_data(block, block.after.tool)
         return Wait(times.auxiliary_s, block.line, (f"{name} Q{block.after.tool}",))
-    if m.action is MAction.AUXILIARY_WORDS:
+    if m.action is MAction.AUXILIARY_WORDS or m.action in _OUTPUTS:
         words = [each for letter in _PARAMETERS if (each := block.words.take(letter)) is not None]
         return Wait(times.auxiliary_s, block.line, (_with_words(name, words),))
     if m.action is MAction.RIGID_TAP:

@@ -246,6 +246,8 @@ class MAction(Enum):
     RIGID_TAP = ("rigid_tap", "")
     AUXILIARY = ("auxiliary", "")
     AUXILIARY_WORDS = ("auxiliary_words", "")
+    OUTPUT_IN_STEP = ("output_in_step", "")
+    OUTPUT_AT_ONCE = ("output_at_once", "")
     SET_TOOL = ("set_tool", "tool")
     UNSUPPORTED = ("unsupported", "")
     LEFT_OUT = ("left_out", "")
