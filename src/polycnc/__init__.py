@@ -66,4 +66,4 @@ __getattr__ = names_on_demand(__name__)
 
 
 def __dir__() -> list[str]:
-    return sorted([*globals(), *__all__])
+    return sorted([*__all__, *(name for name in globals() if name.startswith("__"))])

@@ -12,6 +12,7 @@ from typing import Any
 
 import pytest
 
+import polycnc
 from support.command import environment
 from support.pages import fences
 
@@ -55,6 +56,11 @@ def test_the_wheel_has_everything_that_is_no_code(built: list[Path]) -> None:
     }
     assert wanted - names == set()
     assert "polycnc/conformance/data/not_applicable.toml" in names
+
+
+def test_the_package_lists_its_public_names_alone() -> None:
+    assert {name for name in dir(polycnc) if not name.startswith("__")} == set(polycnc.__all__)
+    assert "__version__" in dir(polycnc)
 
 
 PLUGIN_CONFTEST = """
