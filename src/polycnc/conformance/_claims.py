@@ -7,8 +7,9 @@ from __future__ import annotations
 
 import ast
 import difflib
+import functools
 import inspect
-import textwrap
+import linecache
 import tomllib
 from collections.abc import Callable, Iterable, Mapping
 from fnmatch import fnmatchcase
@@ -120,11 +121,23 @@ def asserts_something(function: Callable[..., object]) -> bool:
     """
     handle = getattr(function, "hypothesis", None)  # what @given wraps
     inner = inspect.unwrap(getattr(handle, "inner_test", function))
+    code = getattr(inner, "__code__", None)
+    body = None if code is None else _functions(code.co_filename).get(code.co_firstlineno)
+    return body is not None and any(_asserts(node) for node in ast.walk(body))
+
+
+@functools.cache
+def _functions(path: str) -> dict[int, ast.AST]:
+    """Return the functions of a file by the line in which they, or their decorators, begin."""
     try:
-        tree = ast.parse(textwrap.dedent(inspect.getsource(inner)))
-    except (OSError, TypeError, SyntaxError):
-        return False
-    return any(_asserts(node) for node in ast.walk(tree))
+        tree = ast.parse("".join(linecache.getlines(path)))
+    except SyntaxError:
+        return {}
+    return {
+        min([node.lineno, *(each.lineno for each in node.decorator_list)]): node
+        for node in ast.walk(tree)
+        if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef)
+    }
 
 
 def _asserts(node: ast.AST) -> bool:
