@@ -16,20 +16,21 @@ from polycnc.errors import UsageError
 from polycnc.servers.calls import library_of, missing_of
 
 _AT = 0x3000  # where the only section begins when the program is loaded
+_SIZE = 0x18000
 
 
-def _pe(names: list[str | int], *, wide: bool, library: str = "FWLIB32.dll") -> bytes:
-    """Return a program for Windows with two libraries, as Microsoft's format describes them (PE, 6.4)."""
+def _pe(names: list[str | int], *, wide: bool, library: str = "FWLIB32.dll", rows: int = 1) -> bytes:
+    """Return a program for Windows with two libraries, the second in so many rows (Microsoft's format PE, 6.4)."""
     optional = 240 if wide else 224
     directories = bytearray(16 * 8)
     struct.pack_into("<II", directories, 8, _AT, 60)
     head = struct.pack("<H", 0x20B if wide else 0x10B).ljust(optional - 132, b"\0")
     body = head + struct.pack("<I", 16) + bytes(directories)
-    section = struct.pack("<8sIIII16x", b".idata", 0x1000, _AT, 0x1000, 0x400)
+    section = struct.pack("<8sIIII16x", b".idata", _SIZE, _AT, _SIZE, 0x400)
     coff = struct.pack("<HHIIIHH", 0x8664 if wide else 0x14C, 1, 0, 0, 0, optional, 0x102)
     header = b"MZ".ljust(0x3C, b"\0") + struct.pack("<I", 0x40) + b"PE\0\0" + coff + body + section
     form, top = ("<Q", 1 << 63) if wide else ("<I", 1 << 31)
-    data, thunks = bytearray(60), list[int]()
+    data, thunks = bytearray(20 * (rows + 2)), list[int]()
     for name in names:
         thunks.append(name | top if isinstance(name, int) else _AT + len(data))
         if isinstance(name, str):
@@ -43,8 +44,9 @@ def _pe(names: list[str | int], *, wide: bool, library: str = "FWLIB32.dll") -> 
     nothing = _AT + len(data)
     data += struct.pack(form, 0)
     struct.pack_into("<IIIII", data, 0, nothing, 0, 0, other, nothing)
-    struct.pack_into("<IIIII", data, 20, table, 0, 0, own, table)
-    return header.ljust(0x400, b"\0") + bytes(data).ljust(0x1000, b"\0")
+    for row in range(rows):
+        struct.pack_into("<IIIII", data, 20 * (row + 1), table, 0, 0, own, table)
+    return header.ljust(0x400, b"\0") + bytes(data).ljust(_SIZE, b"\0")
 
 
 def _elf(names: list[str]) -> bytes:
@@ -121,6 +123,16 @@ def test_a_cut_or_changed_program_is_read_or_refused_in_a_sentence(
     with suppress(UsageError):
         taken, missing = missing_of(program, library_of("fanuc"))
     assert set(missing) <= set(taken)
+
+
+def test_rows_that_share_a_long_table_cost_no_memory(tmp_path: Path) -> None:
+    """Each row and each table is as long as it may be by itself; together they would be 65,620 names."""
+    program = tmp_path / "shared.exe"
+    program.write_bytes(_pe([7] * 20, wide=False, rows=3281))
+    with pytest.raises(UsageError, match="is cut or broken"):
+        missing_of(program, library_of("fanuc"))
+    program.write_bytes(_pe([7] * 20, wide=False, rows=3270))
+    assert missing_of(program, library_of("fanuc")) == (["#7"], ["#7"])
 
 
 def test_what_is_no_program_is_refused(tmp_path: Path) -> None:

@@ -6,13 +6,15 @@ import math
 from functools import partial
 
 import hypothesis.strategies as st
+import numpy as np
 import pytest
 from hypothesis import HealthCheck, example, given, settings
 
 import polycnc
 from polycnc.cnc import Passed, PassedRun, ProgramRun, RunOptions, ToolTime
 from polycnc.machine import Machine, MachineConfig
-from polycnc.nc import Event, ProgramText, load_dialect
+from polycnc.nc import Event, EventRun, ProgramText, load_dialect
+from polycnc.nc.blocks._events import PendingEvents
 from polycnc.nc.channel._options import ChannelOptions
 from polycnc.runner import RunEvent
 from support.programs import LINEAR, TOOLS, machine_config
@@ -112,3 +114,21 @@ def test_many_events_are_columns_and_read_as_a_list() -> None:
         "",
         "the last slot",
     ]
+
+
+def test_after_going_back_the_same_numbers_come_again() -> None:
+    events = EventRun(np.array([3.0, 4.0, 5.0]), np.full(3, -1.0), np.array([7, 8, 9]))
+    pending = PendingEvents()
+    pending.add_run(20, events)
+    before = pending.snapshot()
+    assert pending.pop(20).word == "S3"
+    assert len(pending.pop_some(21, 9)) == 2  # type: ignore[arg-type]
+    for back in (lambda: pending.restore({}), pending.clear):
+        back()
+        pending.add_run(20, events)
+        assert pending.snapshot() == before
+        assert pending.pop(21).word == "S4"
+        with pytest.raises(KeyError):
+            pending.pop(20)
+        with pytest.raises(KeyError):
+            pending.pop(40)

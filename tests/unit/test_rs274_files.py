@@ -73,6 +73,7 @@ def test_lengths_of_the_file_may_be_inches(tmp_path: Path) -> None:
         ("5221 10\n31 7.5\n", "m.var:2:1: #31 is out of order"),
         ("31 1\n31 2\n", "m.var:2:1: #31 is out of order"),
         ("99999 1\n", "m.var:1:1: there is no parameter #99999"),
+        ("31 7.5\n32 1e999\n", "m.var:2:1: '1e999' is too large for #32"),
         ("31 1\n" * 200_001, "too large"),
         (None, "cannot be read"),
     ],
@@ -220,7 +221,9 @@ def test_an_ini_file_brings_its_tools_parameters_folders_and_numbers(
     assert end == pytest.approx([12.5 + 2 * scale, 4.0])
 
 
-@pytest.mark.parametrize("line", ["T3 P1 Zx", "T3.5 P1", "P1 Z3", "T3 Q12", "hello"])
+@pytest.mark.parametrize(
+    "line", ["T3 P1 Zx", "T3.5 P1", "P1 Z3", "T3 Q12", "hello", f"T3 Z{9:9<400}", f"T{9:9<400}"]
+)
 def test_a_tool_table_with_a_wrong_line_is_refused_at_it(line: str, tmp_path: Path) -> None:
     with pytest.raises(ConfigurationError) as found:
         made(tmp_path, table=f"T1 P1 Z2\n{line}\n")

@@ -242,7 +242,7 @@ class _Editor:
         except Exception as error:  # whatever it is, it is ours: nobody is shown a traceback
             what = f"internal error, the mistake is not yours: {type(error).__name__}: {error}"
             found = [Finding(Span(0, 0, 1), f"{what}\nPlease report it, with this text.", "", True)]
-        if found is not None:
+        if found is not None and uri in self._documents:
             self._checked[uri] = Checked(document, found)
             self._publish(uri, document, found)
 
@@ -254,7 +254,7 @@ class _Editor:
         """Return the times of a program; None where it has changed meanwhile, or is not run."""
         text = document.text
         while (known := self._surveys.get(uri)) is None or known[0] != text:
-            if self._document(uri).text != text:
+            if uri not in self._documents or self._document(uri).text != text:
                 return None
             if uri in self._surveying:
                 await asyncio.wait([self._surveying[uri]])
@@ -279,12 +279,13 @@ class _Editor:
                 )
             return None
 
+        found = None
         try:
             found = await self._times.run(uri, work)
         finally:
             self._surveying.pop(uri, None)
-            self._surveys[uri] = (text, None)
-        self._surveys[uri] = (text, found)
+            if uri in self._documents:  # else it has been closed meanwhile
+                self._surveys[uri] = (text, found)
 
     def _holds_before(
         self, uri: str, document: Document, line: int, dialect: Dialect

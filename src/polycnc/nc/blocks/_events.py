@@ -104,8 +104,8 @@ class PendingEvents:
             return event
         while self._runs and self._runs[0][0] + len(self._runs[0][1]) <= number:
             self._runs.popleft()
-        first, run = self._runs[0]
-        if number < max(first, self._taken):
+        first, run = self._runs[0] if self._runs else (number + 1, None)
+        if run is None or number < max(first, self._taken):
             raise KeyError(number)
         found = run.part(number - first, number - first + most)
         self._taken = number + len(found)
@@ -131,7 +131,7 @@ class PendingEvents:
     def clear(self) -> None:
         """Forget everything."""
         self._single.clear()
-        self._runs.clear()
+        self._forget_runs()
 
     def snapshot(self) -> dict[int, Event]:
         """Return what is pending by number, to go back to."""
@@ -139,8 +139,12 @@ class PendingEvents:
 
     def restore(self, saved: dict[int, Event]) -> None:
         """Go back to a snapshot."""
-        self._runs.clear()
+        self._forget_runs()
         self._single = dict(saved)
+
+    def _forget_runs(self) -> None:
+        self._runs.clear()
+        self._taken = 0
 
     def _numbered(self) -> Iterator[tuple[int, Event]]:
         yield from self._single.items()

@@ -5,11 +5,12 @@ Source: LinuxCNC, "G-code Overview", "Parameters File", and what `rs274` refuses
 
 from __future__ import annotations
 
+import math
 import re
 from collections.abc import Callable, Iterable
 from pathlib import Path
 
-from polycnc.errors import SourcePosition, UsageError
+from polycnc.errors import SourcePosition, UsageError, shown
 
 LAST = 5601
 LARGEST_BYTES = 1_000_000
@@ -50,7 +51,11 @@ def read_parameters(path: str | Path) -> dict[int, float]:
             raise _wrong(path, number, line, f"there is no parameter #{index}", f"Numbers are 1 to {LAST}.")
         if index <= last:
             raise _wrong(path, number, line, f"#{index} is out of order", "Sort the lines by their numbers.")
-        last, found[index] = index, float(match[2])
+        if not math.isfinite(value := float(match[2])):
+            raise _wrong(
+                path, number, line, f"{shown(match[2], 40)} is too large for #{index}", "Correct the line."
+            )
+        last, found[index] = index, value
     return found
 
 

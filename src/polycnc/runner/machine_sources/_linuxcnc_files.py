@@ -92,7 +92,7 @@ def _words(line: str, position: SourcePosition) -> tuple[dict[str, float], str]:
     """Return the words of a line, and its remark."""
     body, _, text = line.partition(";")
     words = {found[1].upper(): float(found[2]) for found in _WORD.finditer(body)}
-    if _WORD.sub("", body).strip():
+    if _WORD.sub("", body).strip() or not all(map(math.isfinite, words.values())):
         raise ConfigurationError(
             "this is no tool",
             position=position,

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 import struct
 from collections.abc import Callable, Iterable, Iterator
+from itertools import islice
 from pathlib import Path
 
 from polycnc.controllers.library.clib import CLibrary
@@ -49,9 +50,9 @@ def _imports_of(path: Path, library: CLibrary) -> list[str]:
         raise UsageError(f"{path}: cannot be read: {error.strerror}", hint="Name a program.") from None
     try:
         if content[:2] == b"MZ":
-            names = list(_of_windows(content, library.name.lower()))
+            names = _some(_of_windows(content, library.name.lower()))
         elif content[:4] == b"\x7fELF":
-            names = _of_library(_of_linux(content), path, library)
+            names = _of_library(_some(_of_linux(content)), path, library)
         else:
             raise UsageError(
                 f"{path} is no program for Windows or Linux", hint="Name an .exe, .dll or ELF file."
@@ -59,6 +60,14 @@ def _imports_of(path: Path, library: CLibrary) -> list[str]:
     except (_Broken, struct.error):
         raise UsageError(f"{path} is cut or broken: its tables lead out of it", hint="Get it anew.") from None
     return list(dict.fromkeys(names))
+
+
+def _some(names: Iterator[str]) -> list[str]:
+    """Return names, so many as a program may have: tables that overlap have far more."""
+    found = list(islice(names, _MOST_NAMES + 1))
+    if len(found) > _MOST_NAMES:
+        raise _Broken
+    return found
 
 
 def _of_library(names: Iterable[str], path: Path, library: CLibrary) -> list[str]:
