@@ -123,8 +123,11 @@ def test_after_going_back_the_same_numbers_come_again() -> None:
     before = pending.snapshot()
     assert pending.pop(20).word == "S3"
     assert len(pending.pop_some(21, 9)) == 2  # type: ignore[arg-type]
-    for back in (lambda: pending.restore({}), pending.clear):
-        back()
+    for is_cleared in (False, True):
+        if is_cleared:
+            pending.clear()
+        else:
+            pending.restore({})
         pending.add_run(20, events)
         assert pending.snapshot() == before
         assert pending.pop(21).word == "S4"
