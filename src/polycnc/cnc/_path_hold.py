@@ -20,9 +20,8 @@ class PathHold:
 
     def apply(self) -> None:
         """Hold the path while anything holds it; take it over where it moves."""
-        stands = (
-            self.moment.state is RunState.STOPPED_AT_BLOCK
-        )  # before a segment that is in the look-ahead already
+        # The path stops before a segment that is in the look-ahead already.
+        stands = self.moment.state is RunState.STOPPED_AT_BLOCK
         met = self.moment.probing is not None and self.moment.probing.met and self.moment.probing.deletes
         stops = stands or met or self.moment.stop is not None or self.has_met_enough
         hold = self.moment.hold or stops or self.moment.unanswered

@@ -74,9 +74,8 @@ class _Editor:
         self._begin(self._check(uri))
 
     def saved(self, params: lsp.DidSaveTextDocumentParams) -> None:
-        self._begin(
-            self._check(params.text_document.uri)
-        )  # another file of the folder may have changed since
+        # Another file of the folder may have changed since.
+        self._begin(self._check(params.text_document.uri))
 
     def closed(self, params: lsp.DidCloseTextDocumentParams) -> None:
         uri = params.text_document.uri
@@ -308,9 +307,8 @@ class _Editor:
     def _read(self, uri: str) -> tuple[Document, Kind, Dialect | None]:
         """Return a text, what it is, and the dialect of a program; None for a language that nobody reads here."""
         document, name = self._document(uri), _name(uri)
-        if any(
-            len(line) > MOST_LINE for line in document.lines
-        ):  # which nobody writes: looked at by the check alone
+        # Nobody writes such lines: they are looked at by the check alone.
+        if any(len(line) > MOST_LINE for line in document.lines):
             return Document(""), Kind.UNKNOWN, None
         kind = kind_of(name, document.text)
         if kind is not Kind.PROGRAM:

@@ -63,10 +63,7 @@ PATH_ROW = np.dtype(
         ("blocks", np.int64),  # blocks whose last segment was left since the path began
         ("cycles", np.int64),  # samples taken in the running segment
         ("event", np.int64),  # event last met, -1 none
-        (
-            "passes",
-            np.int64,
-        ),  # events that may be passed are noted in `passed`, if there is room; else they stop
+        ("passes", np.int64),  # events that may be passed are noted in `passed`, while it has room
         ("passed", np.int64),  # so many have been noted
         ("passed_at", np.int64),  # the cycle of the last one, or from which on the path was let go
         ("spare", np.int64),  # so many more are passed in that cycle
