@@ -634,3 +634,31 @@ def test_the_drilling_axis_the_first_spindle_and_none_are_told_apart(turned: Liv
     turned.pnc.control.set_overrides(feed=1.0, channel=0)
     turned.pnc.control.set_overrides(spindle=1.0)
     assert dict(zip(asked, found, strict=True)) == asked
+
+
+@pytest.mark.covers(
+    "cpl.WAIT", "cpl.WAIT.result.0", "cpl.WAIT.result.1", "cpl.WAIT.result.2", "cpl.CLOCK", "cpl.IC"
+)
+@pytest.mark.covers("cpl.WAIT.nc", "cpl.IC.group.6")
+def test_a_wait_tells_whether_it_ended_by_its_signal_or_its_time(living: Living) -> None:
+    signal = living.pnc.system.interface
+    signal.set_bit(Signals(6), 1, 3, False)
+    living.write(
+        "main1",
+        "10 S%=CLOCK\n20 WAIT(IC(3,6,1),900,E%)\n30 #A%=E% : #B%=CLOCK-S%\n40 WAIT(,250,E%)\n50 #C%=E% : #D%=CLOCK-S%-#B%\n"
+        "60 WAIT(NOT IC(3,6,1),70,E%)\n70 #E%=E% : #F%=CLOCK-S%-#B%-#D%\n80 WAIT(IC(3,6,1)=TRUE,70,E%)\n90 #G%=E%\n"
+        "100 #H%=CLOCK-S%-#B%-#D%-#F%\nN110 G1 X3 F6000\nN120 WAIT\n130 #I!=MPOS(1)\n140 WAIT(IC(3,6,1)=FALSE)\n150 #J%=CLOCK-S%",
+    )  # fmt: skip
+    living.pnc.select_program("main1")
+    living.pnc.cycle_start()
+    living.pnc.advance(123)
+    signal.set_bit(Signals(6), 1, 3, True)
+    living.pnc.advance(900)
+    assert "#J%" not in living.pnc.variables()
+    signal.set_bit(Signals(6), 1, 3, False)
+    living.until_over()
+    found = living.pnc.variables()
+    assert [found[f"#{name}%"] for name in "ACEG"] == [2, 1, 1, 0]
+    assert [found[f"#{name}%"] for name in "BDFH"] == pytest.approx([123, 250, 70, 0], abs=4)
+    assert found["#I!"] == 3
+    assert int(str(found["#J%"])) == pytest.approx(1023, abs=4)
