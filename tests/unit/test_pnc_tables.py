@@ -645,16 +645,18 @@ def test_a_wait_tells_whether_it_ended_by_its_signal_or_its_time(living: Living)
     signal.set_bit(Signals(6), 1, 3, False)
     living.write(
         "main1",
-        "10 S%=CLOCK\n20 WAIT(IC(3,6,1),900,E%)\n30 #A%=E% : #B%=CLOCK-S%\n40 WAIT(,250,E%)\n50 #C%=E% : #D%=CLOCK-S%-#B%\n"
-        "60 WAIT(NOT IC(3,6,1),70,E%)\n70 #E%=E% : #F%=CLOCK-S%-#B%-#D%\n80 WAIT(IC(3,6,1)=TRUE,70,E%)\n90 #G%=E%\n"
-        "100 #H%=CLOCK-S%-#B%-#D%-#F%\nN110 G1 X3 F6000\nN120 WAIT\n130 #I!=MPOS(1)\n140 WAIT(IC(3,6,1)=FALSE)\n150 #J%=CLOCK-S%",
+        "10 S%=CLOCK\n20 WAIT(IC(3,6,1),900,E%)\n30 #A%=E% : #B%=CLOCK-S%\n40 WAIT(,250,E%)\n"
+        "50 #C%=E% : #D%=CLOCK-S%-#B%\n60 WAIT(NOT IC(3,6,1),70,E%)\n70 #E%=E% : #F%=CLOCK-S%-#B%-#D%\n"
+        "80 WAIT(IC(3,6,1)=TRUE,70,E%)\n90 #G%=E%\n"
+        "100 #H%=CLOCK-S%-#B%-#D%-#F%\nN110 G1 X3 F6000\nN120 WAIT\n130 #I!=MPOS(1)\n"
+        "140 WAIT(IC(3,6,1)=FALSE)\n150 #J%=CLOCK-S%",
     )  # fmt: skip
     living.pnc.select_program("main1")
     living.pnc.cycle_start()
     living.pnc.advance(123)
     signal.set_bit(Signals(6), 1, 3, True)
     living.pnc.advance(900)
-    assert "#J%" not in living.pnc.variables()
+    assert living.pnc.variables()["#J%"] is None
     signal.set_bit(Signals(6), 1, 3, False)
     living.until_over()
     found = living.pnc.variables()
