@@ -169,9 +169,18 @@ CLOSE(2)
 
 
 @pytest.mark.covers(
-    *rows_of(WRITTEN), "cpl.PRN#.n.1-9", "cpl.INP#.semicolon", "cpl.FILEACCESS.ret.-1", "cpl.file.seq"
+    *rows_of(WRITTEN),
+    "cpl.PRN#.n.1-9",
+    "cpl.INP#.semicolon",
+    "cpl.FILEACCESS.ret.-1",
+    "cpl.file.seq",
+    "cpl.PRN#",
+    "cpl.INP#",
+    "cpl.FILEACCESS",
 )
-@pytest.mark.covers("cpl.FILESIZE.k.1", "cpl.FILESIZE.k.2", "cpl.FILEPOS.mode.1")
+@pytest.mark.covers(
+    "cpl.FILESIZE.k.1", "cpl.FILESIZE.k.2", "cpl.FILEPOS.mode.1", "cpl.FILESIZE", "cpl.FILEPOS"
+)
 def test_values_of_all_types_are_written_and_read_again(root: Root) -> None:
     found = root.run(numbered(WRITTEN.strip())).variables
     lines = [
