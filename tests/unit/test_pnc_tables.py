@@ -709,3 +709,35 @@ def test_what_was_programmed_last_of_each_group_is_told_by_any_of_it(living: Liv
             lines.append(f'4 A$=NCF("{other}") : C{place}N{number}?=A$="{name}"')
             checks.append(f"?C{place}N{number}?")
     assert told(living, "\n".join([*lines, "N5 M5"]), *checks) == [1.0] * len(checks)
+
+
+@pytest.mark.covers(
+    "cpl.seltype.0",
+    "cpl.seltype.1",
+    "cpl.COF",
+    "cpl.DPC",
+    "cpl.SCL",
+    "cpl.CPOS",
+    "cpl.AXO",
+    "cpl.WPOS",
+    "cpl.MPOS",
+)
+def test_an_index_is_one_of_the_channel_unless_the_type_says_physical(turned: Living) -> None:
+    """X is coordinate 3 and physical axis 4; there is no coordinate 4 and no physical axis 3."""
+    before = "N1 G18 G92 X-7\nN2 G60 X25.4\nN3 G138 X50.8 R0\nN4 G38 X1.25\nN5 G1 X5 F9000\n6 WAIT"
+    for function, first in (
+        ("COF", ""),
+        ("DPC", ""),
+        ("SCL", "2,"),
+        ("CPOS", ""),
+        ("AXO", ""),
+        ("WPOS", ""),
+        ("MPOS", ""),
+    ):
+        calls = [f"{function}({first}{each})" for each in ("3", "3,1", "4,0", '"X"')]
+        found = told(turned, before, *calls)
+        assert found == [found[0]] * 4, function
+        assert found[0] not in (0, 1), function
+        for wrong in ("3,0", "4,1", "4", "3,2"):
+            what = stopped(turned, f"A={function}({first}{wrong})")
+            assert what.removesuffix(" [1938]") == "INVALID PARAMETER", (function, wrong)
