@@ -21,12 +21,14 @@ from polycnc.servers.http._problem import of_error, problem
 from polycnc.servers.http._routes import Api
 from polycnc.servers.http._statuses import Statuses
 from polycnc.servers.machines import Log, ServedMachine
+from polycnc.web import served_files, served_text
 
 METHOD_NOT_ALLOWED = 405
 PAGE = Path(__file__).parent / "page"
 FILES = {
     "": ("index.html", "text/html; charset=utf-8"),
     "icon.svg": ("icon.svg", "image/svg+xml"),
+    "charts.js": ("charts.js", "text/javascript; charset=utf-8"),
     "page.css": ("page.css", "text/css; charset=utf-8"),
     "page.js": ("page.js", "text/javascript; charset=utf-8"),
     "pages.js": ("pages.js", "text/javascript; charset=utf-8"),
@@ -57,6 +59,13 @@ def make_app(
     count = _add_figures(app, by_name)
     guard = Guard(Statuses(app, by_name), hosts=hosts, token=token, answered=count)
     _add_login(app, guard)
+
+    @app.get("/web/{file}", include_in_schema=False)
+    async def shared(file: str) -> Response:
+        if file not in served_files():
+            return problem(404, "there is nothing here", "The page is at /.")
+        kind = "text/css" if file.endswith(".css") else "text/javascript"
+        return Response(served_text(file), media_type=f"{kind}; charset=utf-8")
 
     @app.get("/{file}", include_in_schema=False)
     async def page(file: str) -> Response:
