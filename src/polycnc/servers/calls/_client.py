@@ -13,6 +13,7 @@ from polycnc.controllers.library.clib import CLibrary, Slot, Way
 from polycnc.errors import UsageError
 from polycnc.servers.calls._caller import Caller
 from polycnc.servers.calls._frames import CallError, Done, Given, answer_frame
+from polycnc.servers.machines import AS_USUAL, Treatment
 
 MAGIC = b"PNCCALL1"
 _HELLO = struct.Struct("<8sBBH16s16s16s")
@@ -101,14 +102,19 @@ class CallClient:
     """Take the bytes of one client and return what it gets; after `ended` it gets nothing more.
 
     `find` returns the caller for a library, or None if no machine here has it. `tell` is told in a sentence what was
-    refused. Whole frames are carried out one after the other.
+    refused. Whole frames are carried out one after the other. `treat` counts a call and says how it is
+    to be treated: what is dropped ends the connection and is not carried out, and `delay_s` is how much later all
+    answers of the last bytes come.
     """
 
     find: Callable[[str], Caller | None]
     tell: Callable[[str], None] = lambda _: None
     trace: Trace | None = None
     now_s: Callable[[], float] = lambda: 0.0
+    treat: Callable[[], Treatment] = lambda: AS_USUAL
     ended: bool = False
+    dropped: bool = False
+    delay_s: float = 0.0
     caller: Caller | None = None
     _behind: bytearray = field(default_factory=bytearray)
 
@@ -117,6 +123,7 @@ class CallClient:
         if self.ended:
             return b""
         self._behind += data
+        self.delay_s = 0.0
         sent = list[bytes]()
         try:
             if len(self._behind) > _MOST_BEHIND:
@@ -146,6 +153,11 @@ class CallClient:
             raise CallError(f"a frame of {size} bytes")
         if len(behind) < _SIZE.size + size:
             return None
+        treatment = self.treat()
+        if treatment.drop:
+            self.ended = self.dropped = True
+            return None
+        self.delay_s = max(self.delay_s, treatment.delay_s)
         number, serial = _HEAD.unpack_from(behind, _SIZE.size)
         call, given, done = self.caller.carry_out(number, self._taken(_SIZE.size + size)[_BEGIN:])
         if self.trace is not None:
