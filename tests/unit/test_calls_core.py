@@ -5,6 +5,8 @@ from __future__ import annotations
 import json
 import random
 import struct
+from collections.abc import Iterator
+from functools import cache
 from itertools import pairwise
 from pathlib import Path
 
@@ -14,6 +16,7 @@ from hypothesis import strategies as st
 
 from polycnc.controllers.fanuc import PowerMate, fwlib
 from polycnc.controllers.fanuc.clib import FWLIB
+from polycnc.controllers.library.clib import Slot, Way
 from polycnc.errors import UsageError
 from polycnc.servers.calls import LIBRARIES, CallClient, Caller, Trace
 
@@ -72,16 +75,21 @@ def test_a_whole_talk() -> None:
     ]
 
 
+@cache
+def shared() -> Rig:
+    """Return a rig for what its clients do anew."""
+    return Rig()
+
+
 @settings(max_examples=25)
 @given(cuts=st.lists(st.integers(1, 150), max_size=8))
 def test_bytes_may_be_cut_anywhere(cuts: list[int]) -> None:
-    rig = Rig()
+    client = shared().another()
     talk, sent = hello() + OPEN + WRITE + READ, b""
     places = [0, *sorted({cut % len(talk) for cut in cuts}), len(talk)]
     for first, last in pairwise(places):
-        sent += rig.client.receive(talk[first:last])
-    whole = Rig()
-    assert sent == whole.client.receive(talk)
+        sent += client.receive(talk[first:last])
+    assert sent == shared().another().receive(talk)
 
 
 def test_a_doubled_frame_is_a_second_call() -> None:
@@ -169,6 +177,72 @@ def test_garbage_harms_nobody() -> None:
 @pytest.mark.long
 def test_much_garbage_harms_nobody() -> None:
     _garbage(6, 20_000)
+
+
+SIZES = (0, 1, 2, 3, 4, 7, 8, 11, 12, 65532, 65533, 0x7FFFFFFF, 0xFFFFFFFF)
+
+
+def _argument(slot: Slot, dice: random.Random) -> Iterator[bytes]:
+    if slot.way is Way.VALUE:
+        yield bytes(slot.element(dice.choice((0, 1, 2, -1, 3, 16, 103, 32767))))
+        return
+    if slot.reads:
+        size = dice.choice((0, 1, 2, 4, 10, 16, 64))
+        yield dice.choice((struct.pack("<I", size) + dice.randbytes(size), b"\xff" * 4))
+    if slot.writes:
+        yield struct.pack("<I", dice.choice((0, 4, 10, 16, 64, 0xFFFFFFFF)))
+
+
+def _frame(dice: random.Random) -> bytes:
+    """Return a frame, of any call, good or bad in one or some places, or a frame and a piece of one."""
+    call = dice.choice(FWLIB.calls)
+    packed = b"".join(part for slot in call.slots for part in _argument(slot, dice))
+    made = bytearray(struct.pack("<IHH", 4 + len(packed), call.number, 513) + packed)
+    way = dice.random()
+    if way < 0.3:
+        made[dice.randrange(len(made))] ^= 1 << dice.randrange(8)
+    elif way < 0.4:
+        made[:4] = struct.pack("<I", dice.choice(SIZES))
+    elif way < 0.5:
+        made += dice.randbytes(dice.randrange(1, 30))
+    elif way < 0.55:
+        made = bytearray(dice.randbytes(dice.randrange(1, 80)))
+    return bytes(made)
+
+
+def _frames(seed: int, count: int) -> None:
+    """Send frames to clients of one session: each is answered or ends its connection, and the machine stays whole."""
+    rig, dice = Rig(), random.Random(seed)
+    rig.client.receive(hello() + OPEN)
+    caller = rig.client.caller
+    client, answered, refused = rig.client, 0, 0
+    for _ in range(count):
+        data = _frame(dice)
+        cut = dice.randrange(len(data) + 1)
+        sent = client.receive(data[:cut]) + client.receive(data[cut:])
+        assert len(sent) < 4 or struct.unpack_from("<I", sent)[0] + 4 <= len(sent)
+        answered += bool(sent)
+        if client.ended:
+            assert rig.told
+            refused += 1
+            rig.told.clear()
+        if client.ended or not sent:  # some wait for the rest of what their frame says it has
+            client = rig.another()
+            client.caller = caller
+    assert answered > count // 4
+    assert refused > count // 20
+    again = rig.another()
+    again.receive(hello() + OPEN)
+    assert [code for _, code, _ in answers(again.receive(WRITE + READ))] == [0, 0]
+
+
+def test_10_000_frames() -> None:
+    _frames(7, 10_000)
+
+
+@pytest.mark.long
+def test_a_million_frames() -> None:
+    _frames(8, 1_000_000)
 
 
 def test_calls_are_traced(tmp_path: Path) -> None:
