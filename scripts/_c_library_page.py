@@ -57,8 +57,10 @@ outputs. No frame has more than 65,536 bytes. A frame that is none of these ends
 
 ## A trace
 
-`polycnc calls KIND --trace FILE` writes a line of JSON for each call: `time_s` of the machine, `call`, what went `in`, the
-`code`, what came `out`. Numbers and texts are as they are, structures hexadecimal bytes.
+`polycnc calls KIND --trace FILE` writes a line of JSON for each call: `time_s` of the machine, `client` (the first is 1), `call`,
+what went `in`, the `room` for what is written (null: a null pointer), the `code`, what came `out`. Numbers and texts are as they are,
+structures hexadecimal bytes. `polycnc calls KIND --replay FILE` carries the calls out on a new machine, at the same machine times, and
+lists those that answer otherwise; status 1 if there are any.
 
 ## What a program needs
 

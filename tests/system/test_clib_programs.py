@@ -11,6 +11,7 @@ from pathlib import Path
 
 import pytest
 
+from polycnc.cli._calls import calls_command
 from polycnc.servers.calls import build_library, library_of, write_library
 from polycnc.servers.process import Machinery
 from support.c_library import Door, built
@@ -71,7 +72,7 @@ def test_a_program_links_and_says_what_it_has_to(kind: str, tmp_path: Path, door
     assert _run(doors[kind].place, _linked(kind, built(kind), tmp_path)) == _said(kind)
 
 
-def test_a_program_against_the_command(tmp_path: Path) -> None:
+def test_a_program_against_the_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     program, trace = _linked("fanuc", built("fanuc"), tmp_path), tmp_path / "calls.jsonl"
     process = subprocess.Popen(
         [*COMMAND, "calls", "fanuc", "--port", "0", "--trace", trace],
@@ -85,6 +86,8 @@ def test_a_program_against_the_command(tmp_path: Path) -> None:
     assert (process.returncode, error) == (143, "")
     lines = trace.read_text().splitlines()
     assert len(lines) == 7
+    calls_command("fanuc", replay=trace)
+    assert capsys.readouterr().out == _shown("replayed")
     shown = json.loads(_shown("traced"))
     assert {**json.loads(lines[1]), "time_s": shown["time_s"]} == shown
 

@@ -16,9 +16,9 @@ from hypothesis import strategies as st
 
 from polycnc.controllers.fanuc import PowerMate, fwlib
 from polycnc.controllers.fanuc.clib import FWLIB
-from polycnc.controllers.library.clib import Slot, Way
+from polycnc.controllers.library.clib import Call, Slot, Way
 from polycnc.errors import UsageError
-from polycnc.servers.calls import LIBRARIES, CallClient, Caller, Trace
+from polycnc.servers.calls import LIBRARIES, CallClient, Caller, Trace, replay
 
 NUMBERS = {each.function.name: each.number for each in FWLIB.calls}
 WELCOME = b"PNCCALL1" + struct.pack("<i", 0)
@@ -252,10 +252,89 @@ def test_calls_are_traced(tmp_path: Path) -> None:
     trace.close()
     lines = [json.loads(line) for line in (tmp_path / "calls.jsonl").read_text().splitlines()]
     assert lines[1] == {
-        "time_s": 2.5, "call": "cnc_wrmacro", "code": 0, "out": {},
+        "time_s": 2.5, "client": 1, "call": "cnc_wrmacro", "code": 0, "out": {},
         "in": {"FlibHndl": 1, "number": 103, "length": 10, "mcr_val": 31415, "dec_val": 3},
     }  # fmt: skip
     assert lines[2]["out"] == {"macro": struct.pack("<hhih", 103, 0, 31415, 3).hex()}
+
+
+def _replayed(path: Path) -> list[tuple[str, bool]]:
+    device = PowerMate(3)
+    found = replay(path, device, lambda: LIBRARIES["fanuc"].make(FWLIB, [device]))
+    return [(each.call, each.is_equal) for each in found]
+
+
+def test_a_trace_is_carried_out_once_more_with_the_same_answers(tmp_path: Path) -> None:
+    path, dice = tmp_path / "calls.jsonl", random.Random(9)
+    trace = Trace(path)
+    rig = Rig(trace=trace)
+    clock = rig.device.clock
+    clients = [rig.another(trace=trace, now_s=lambda: clock.now_s) for _ in range(2)]
+    for each in clients:
+        each.receive(hello() + OPEN)
+    for number in range(400):
+        client = dice.choice(clients)
+        call = dice.choice(FWLIB.calls)
+        packed = b"".join(part for slot in call.slots for part in _argument(slot, dice))
+        if slot_is_handle(call):
+            packed = struct.pack("<H", 1) + packed[2:]
+        client.receive(struct.pack("<IHH", 4 + len(packed), call.number, 513) + packed)
+        rig.device.advance(number % 7)
+    trace.close()
+    told = _replayed(path)
+    assert len(told) > 350
+    assert [name for name, equal in told if not equal] == []
+    lines = path.read_text().splitlines(keepends=True)
+    at = next(k for k, line in enumerate(lines) if '"code": 0' in line and '"call": "cnc_sysinfo"' in line)
+    lines[at] = lines[at].replace('"code": 0', '"code": 3')
+    path.write_text("".join(lines))
+    assert [k for k, (_, equal) in enumerate(_replayed(path)) if not equal] == [at]
+
+
+def slot_is_handle(call: Call) -> bool:
+    return bool(call.slots) and call.slots[0].argument.name == "FlibHndl" and call.slots[0].way is Way.VALUE
+
+
+GOOD = (
+    '{"time_s": 0.0, "client": 1, "call": "cnc_allclibhndl", "in": {}, "room": {"FlibHndl": 2}, "code": 0, '
+    '"out": {"FlibHndl": 1}}'
+)
+
+
+@pytest.mark.parametrize(
+    ("line", "told"),
+    [
+        ("{", "no line of a trace"),
+        ("[]", "no line of a trace"),
+        ("7", "no line of a trace"),
+        (GOOD.replace('"cnc_allclibhndl"', '"rdap"'), "fwlib32 has no function 'rdap'"),
+        (GOOD.replace('"FlibHndl": 2', '"FlibHndl": -2'), "no line of a trace: room for FlibHndl"),
+        (GOOD.replace('"FlibHndl": 2', '"FlibHndl": 70000'), "no line of a trace: room for FlibHndl"),
+        (GOOD.replace("0.0", "NaN"), "the time nan s is before"),
+        (GOOD.replace("0.0", "1e300"), "the time 1e\\+300 s is before"),
+        (GOOD.replace("0.0", "-1"), "the time -1 s is before"),
+        (
+            GOOD.replace("cnc_allclibhndl", "cnc_sysinfo").replace('"in": {}', '"in": {"FlibHndl": "x"}'),
+            "no line",
+        ),
+        ("x" * (1 << 20), "a line of more than"),
+    ],
+)
+def test_a_line_that_is_none_of_a_trace_is_refused_with_its_place(
+    line: str, told: str, tmp_path: Path
+) -> None:
+    path = tmp_path / "calls.jsonl"
+    path.write_text(f"{GOOD}\n\n{line}\n")
+    with pytest.raises(UsageError, match=f":3: .*{told}|:3: {told}"):
+        list(replay(path, shared().device, lambda: LIBRARIES["fanuc"].make(FWLIB, [shared().device])))
+
+
+def test_a_trace_that_cannot_be_read_is_refused(tmp_path: Path) -> None:
+    with pytest.raises(UsageError, match="cannot be read"):
+        _replayed(tmp_path / "missing.jsonl")
+    (tmp_path / "bytes.jsonl").write_bytes(b"\xff\xfe\x80")
+    with pytest.raises(UsageError, match="it is no text"):
+        _replayed(tmp_path / "bytes.jsonl")
 
 
 def test_a_trace_that_cannot_be_written_is_refused(tmp_path: Path) -> None:

@@ -10,8 +10,9 @@ from pathlib import Path
 from polycnc.controllers.library.clib import PORT
 from polycnc.errors import UsageError
 from polycnc.servers.calls._caller import Caller
-from polycnc.servers.calls._client import CallClient, Trace
+from polycnc.servers.calls._client import CallClient
 from polycnc.servers.calls._libraries import LIBRARIES
+from polycnc.servers.calls._trace import Trace
 from polycnc.servers.machines import AS_USUAL, LOOPBACK, Log, ServedMachine, Treatment
 
 _MOST_CLIENTS = 256
