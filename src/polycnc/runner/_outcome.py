@@ -19,7 +19,7 @@ from polycnc.runner._operations import Operation
 from polycnc.runner._run_events import RunEvent
 
 if TYPE_CHECKING:
-    from polycnc.runner._machining import Collision, Machined
+    from polycnc.runner._machined import Collision, Machined
     from polycnc.stock import Stock
 
 Floats = npt.NDArray[np.float64]
