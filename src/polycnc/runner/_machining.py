@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-import re
-from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, replace
-from typing import Any
+from collections.abc import Mapping
+from dataclasses import replace
 
 import numpy as np
 import numpy.typing as npt
@@ -13,103 +11,14 @@ import numpy.typing as npt
 from polycnc.errors import SourcePosition, UsageError
 from polycnc.kernel import IS_RAPID, LEADING, TIME_S
 from polycnc.machine import MachineConfig, RotaryAxis, ToolConfig
-from polycnc.nc import CONTEXT_SHIFT, BlockRecords, ProgramText
-from polycnc.runner._blocks import Blocks, BlockTable, ExecutedBlock
-from polycnc.stock import (
-    ContactKind,
-    Course,
-    Cutting,
-    Form,
-    NoStockError,
-    Rows,
-    Stock,
-    Tool,
-    ToolKind,
-    tool_number,
-    tool_of_remark,
-)
+from polycnc.nc import CONTEXT_SHIFT, BlockRecords
+from polycnc.runner._blocks import BlockTable, ExecutedBlock
+from polycnc.runner._machined import Collision, IdleFeed, Machined
+from polycnc.runner._stock_tools import tools_of
+from polycnc.stock import Course, Cutting, Form, NoStockError, Rows, Tool, fixtures_of
 
 Floats = npt.NDArray[np.float64]
 _PLACES = ("X", "Y", "Z")
-_REMARK_OR_TOOL = re.compile(rb"\(([^)\r\n]*)\)|;([^\r\n]*)|[Tt][ \t]*0*([0-9]+)")
-_INCH = re.compile(rb"[Gg]0*20(?![0-9.])")
-
-
-@dataclass(frozen=True, slots=True)
-class Collision:
-    """Say what went wrong in a block: kind, program and line (from 1), when first, and where it was how deep (mm).
-
-    `position` is the block's place in its text, None where that is not known.
-    """
-
-    kind: ContactKind
-    program: str
-    line: int
-    position: SourcePosition | None
-    t_s: float
-    place: tuple[float, float, float]
-    depth_mm: float
-
-    def __str__(self) -> str:
-        place = " ".join(f"{name}{value:.3f}" for name, value in zip(_PLACES, self.place, strict=True))
-        return f"{self.kind}, {self.depth_mm:.3f} mm deep at {place}"
-
-
-@dataclass(frozen=True, eq=False)
-class Machined:
-    """Hold what a run left of a body: the stock, volumes (mm3) in all, by block and by tool, and what went wrong.
-
-    `removed_mm3` [blocks] belongs to `blocks`. `messages` say what was assumed. The body of `form` was cut by `tools`
-    on their `course`, from `zero_mm` in machine coordinates.
-    """
-
-    stock: Stock
-    blocks: Blocks
-    removed_mm3: Floats
-    by_tool_mm3: Mapping[int, float]
-    collisions: list[Collision]
-    messages: list[str]
-    form: Form
-    course: Rows
-    tools: Mapping[int, Tool]
-    zero_mm: tuple[float, float, float]
-
-    @property
-    def volume_mm3(self) -> float:
-        """What all blocks have removed."""
-        return float(self.removed_mm3.sum())
-
-    def as_dict(self) -> dict[str, Any]:
-        """Return sizes, volumes and collisions as plain data for JSON; lines are those of the programs."""
-        lines: dict[tuple[str, int], float] = {}
-        for number in np.flatnonzero(self.removed_mm3).tolist():
-            block = self.blocks[number]
-            key = block.program, block.line
-            lines[key] = lines.get(key, 0.0) + float(self.removed_mm3[number])
-        return {
-            "low_mm": list(self.stock.box.low),
-            "high_mm": list(self.stock.box.high),
-            "cell_mm": self.stock.cell_mm,
-            "volume_mm3": self.stock.volume_mm3,
-            "removed_mm3": self.volume_mm3,
-            "removed_by_tool_mm3": {str(tool): volume for tool, volume in self.by_tool_mm3.items()},
-            "removed_by_line_mm3": [
-                {"program": program, "line": line, "volume_mm3": volume}
-                for (program, line), volume in lines.items()
-            ],
-            "collisions": [
-                {
-                    "kind": each.kind.name.lower(),
-                    "text": str(each),
-                    "program": each.program,
-                    "line": each.line,
-                    "time_s": each.t_s,
-                    "place_mm": list(each.place),
-                    "depth_mm": each.depth_mm,
-                }
-                for each in self.collisions
-            ],
-        }
 
 
 class MachiningCollector:
@@ -154,7 +63,7 @@ class MachiningCollector:
         found = [self._context(int(tag), records) for tag in tags[begins].tolist()]
         shift, tool = (np.repeat(np.array(column), lengths, axis=0) for column in zip(*found, strict=True))
         pieces = np.split(tags, begins[1:])
-        turns = np.concatenate([records.spindle_turns(piece) for piece in pieces])
+        turns = np.concatenate([records.spindle_directions(piece) for piece in pieces])
         starts = np.flatnonzero(np.diff(tags, prepend=~tags[:1]))
         block = np.repeat(self._table.numbers(tags[starts], records), np.diff(starts, append=len(tags)))
         place = rows[:, LEADING : LEADING + len(self._config.axes)][:, self._axes]
@@ -197,53 +106,41 @@ class MachiningCollector:
         x, y, z = self._zero or [0.0, 0.0, 0.0]
         course = replace(course, tip=course.tip - (x, y, z))
         stock = form.body(course, tools)
-        cutting = Cutting(stock, tools)
-        messages = [f"stock: {stock.box}, {stock.cell_mm:g} mm a cell"]
+        target = form.target_of(stock)
+        cutting = Cutting(stock, tools, fixtures_of(form.fixtures, stock.cell_mm), target)
         cutting.add(course)
-        messages += [
-            f"the shape of tool {number} is not known: it cuts nothing here"
-            for number in sorted(cutting.unknown_tools)
-        ]
         blocks = self._table.blocks()
-        collisions = [
-            Collision(each.kind, at.program, at.line, self._place(at), each.t_s, each.place, each.depth_mm)
-            for each in cutting.contacts
-            for at in [blocks[each.block]]
-        ]
         removed = np.zeros(len(blocks))
         known = cutting.by_block_mm3[: len(blocks)]
         removed[: len(known)] = known
-        volumes = cutting.by_tool_mm3
-        return Machined(stock, blocks, removed, volumes, collisions, messages, form, course, tools, (x, y, z))
-
-
-def tools_of(config: MachineConfig, texts: Mapping[str, ProgramText]) -> dict[int, Tool]:
-    """Return the tools that the machine file and the remarks of the programs describe; remarks come first."""
-    tools = {}
-    for number, each in config.tools.items():
-        described = tool_of_remark(each.description)
-        if described is not None:
-            tools[number] = described
-        elif each.radius_mm > 0.0:
-            tools[number] = Tool(ToolKind.FLAT, 2.0 * each.radius_mm)
-    for text in texts.values():
-        inch = _INCH.search(text.content) is not None
-        for number, remark in _remarks_of_tools(text):
-            if (found := tool_of_remark(remark, inch=inch)) is not None:
-                tools[number] = found
-    return tools
-
-
-def _remarks_of_tools(text: ProgramText) -> Iterator[tuple[int, str]]:
-    """Yield numbers of tools with remarks: those that name them, and the last one before a T word."""
-    last = ""
-    for found in _REMARK_OR_TOOL.finditer(text.content):
-        if found[3] is not None:
-            if last:
-                yield int(found[3][:9]), last
-            continue
-        remark = (found[1] or found[2] or b"").decode("utf-8", "replace")
-        named = tool_number(remark)
-        if named is not None:
-            yield named, remark
-        last = "" if named is not None else remark
+        return Machined(
+            stock=stock,
+            blocks=blocks,
+            removed_mm3=removed,
+            by_tool_mm3=cutting.by_tool_mm3,
+            collisions=[
+                Collision(
+                    each.kind, at.program, at.line, self._place(at), each.t_s, each.place, each.depth_mm
+                )
+                for each in cutting.contacts
+                for at in [blocks[each.block]]
+            ],
+            idle=[
+                IdleFeed(at.program, at.line, self._place(at), each.t_s, each.duration_s, each.place)
+                for each in cutting.idle
+                for at in [blocks[each.block]]
+            ],
+            idle_s=cutting.idle_s,
+            comparison=None if target is None else target.compare(stock),
+            messages=[
+                f"stock: {stock.box}, {stock.cell_mm:g} mm a cell",
+                *(
+                    f"the shape of tool {number} is not known: it cuts nothing here"
+                    for number in sorted(cutting.unknown_tools)
+                ),
+            ],
+            form=form,
+            course=course,
+            tools=tools,
+            zero_mm=(x, y, z),
+        )

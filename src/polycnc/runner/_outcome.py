@@ -19,7 +19,7 @@ from polycnc.runner._run_events import RunEvent
 from polycnc.runner._trace_tables import array_of, arrow_of, columns_of, pandas_of
 
 if TYPE_CHECKING:
-    from polycnc.runner._machining import Collision, Machined
+    from polycnc.runner._machined import Collision, Machined
     from polycnc.stock import Stock
 
 Floats = npt.NDArray[np.float64]

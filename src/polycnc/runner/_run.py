@@ -45,6 +45,9 @@ def run(
     loop_limit_s: float = LOOP_LIMIT_S,
     stock: str | None = None,
     resolution_mm: float | None = None,
+    fixtures: Iterable[str] = (),
+    target: str | None = None,
+    tolerance_mm: float | None = None,
 ) -> TracedResult: ...
 
 
@@ -70,6 +73,9 @@ def run(
     loop_limit_s: float = LOOP_LIMIT_S,
     stock: str | None = None,
     resolution_mm: float | None = None,
+    fixtures: Iterable[str] = (),
+    target: str | None = None,
+    tolerance_mm: float | None = None,
 ) -> RunResult: ...
 
 
@@ -94,6 +100,9 @@ def run(
     loop_limit_s: float = LOOP_LIMIT_S,
     stock: str | None = None,
     resolution_mm: float | None = None,
+    fixtures: Iterable[str] = (),
+    target: str | None = None,
+    tolerance_mm: float | None = None,
 ) -> RunResult:
     """Run a part program on a simulated machine and return times, lengths, extents and messages.
 
@@ -113,8 +122,9 @@ def run(
     without a block or a WAIT; one that comes back to where it was is an error at once.
 
     With `stock` the tools cut a body: `auto`, `box=X0,Y0,Z0,X1,Y1,Z1`, `cylinder=D,Z0,Z1` (mm, work coordinates) or an
-    STL file, in cells of `resolution_mm`. What is left, what was removed and what went wrong are in the result:
-    `stock`, `removed_mm3`, `collisions`, `machined`.
+    STL file, in cells of `resolution_mm`. `fixtures` are boxes and STL files that nothing may touch, `target` is the
+    STL file of what is to come out, within `tolerance_mm` (0.02 mm if absent). What is left, what was removed and what
+    went wrong are in the result: `stock`, `removed_mm3`, `collisions`, `machined`.
 
     Raises:
         ProgramError: with `check`, the program cannot be run as written; what ran before it is in `.result`.
@@ -135,6 +145,9 @@ def run(
         loop_limit_s=loop_limit_s,
         stock=stock,
         resolution_mm=resolution_mm,
+        fixtures=tuple(fixtures),
+        target=target,
+        tolerance_mm=tolerance_mm,
     )
     return run_program(
         program, settings, trace=trace, check=check, rows=rows, tagged_rows=tagged_rows, progress=progress

@@ -11,9 +11,10 @@ from pathlib import Path
 import numpy as np
 
 from polycnc.errors import UsageError
-from polycnc.stock._cutting import Rows
+from polycnc.stock._rows import Rows
 from polycnc.stock._solid import solid_stock
 from polycnc.stock._stock import Box, Stock, check_cell
+from polycnc.stock._target import TOLERANCE_MM, Target, check_tolerance
 from polycnc.stock._tool import Tool
 
 MARGIN_MM = 1.0
@@ -29,19 +30,29 @@ class NoStockError(UsageError):
 
 @dataclass(frozen=True, slots=True)
 class Form:
-    """Say what body to cut: its text, and the resolution (mm) if one was given."""
+    """Say what body to cut: its text, and the resolution (mm) if one was given.
+
+    `fixtures` are texts of what stands beside it, `target` is the STL file of what is to come out, within
+    `tolerance_mm`.
+    """
 
     text: str
     cell_mm: float | None = None
+    fixtures: tuple[str, ...] = ()
+    target: str | None = None
+    tolerance_mm: float = TOLERANCE_MM
 
     def __post_init__(self) -> None:
         kind, _, numbers = self.text.partition("=")
         if kind in ("box", "cylinder"):
-            _numbers(self.text, numbers, 6 if kind == "box" else 3)
+            numbers_of(self.text, numbers, 6 if kind == "box" else 3)
         elif self.text != "auto" and not self.text.lower().endswith(".stl"):
             raise UsageError(f"'{self.text}' is no stock", hint=f"Write {_FORMS}.")
         if self.cell_mm is not None:
             check_cell(self.cell_mm)
+        check_tolerance(self.tolerance_mm)
+        if self.target is not None and not self.target.lower().endswith(".stl"):
+            raise UsageError(f"'{self.target}' is no target", hint="Name an STL file.")
 
     def body(self, course: Rows, tools: Mapping[int, Tool]) -> Stock:
         """Return the body for a course of the tool.
@@ -51,10 +62,10 @@ class Form:
         """
         kind, _, numbers = self.text.partition("=")
         if kind == "box":
-            x0, y0, z0, x1, y1, z1 = _numbers(self.text, numbers, 6)
+            x0, y0, z0, x1, y1, z1 = numbers_of(self.text, numbers, 6)
             box = Box((x0, y0, z0), (x1, y1, z1))
         elif kind == "cylinder":
-            diameter, low, high = _numbers(self.text, numbers, 3)
+            diameter, low, high = numbers_of(self.text, numbers, 3)
             return Stock.cylinder(diameter, low, high, self.cell_mm or _cell_mm(diameter))
         elif self.text == "auto":
             box = around(course, tools)
@@ -63,6 +74,14 @@ class Form:
         return Stock(
             box, self.cell_mm or _cell_mm(max(b - a for a, b in zip(box.low[:2], box.high, strict=False)))
         )
+
+    def target_of(self, stock: Stock) -> Target | None:
+        """Return what is to come out of a body; None if that is not said.
+
+        Raises:
+            UsageError: no such file, or a surface that is none.
+        """
+        return None if self.target is None else Target(Path(self.target), stock, self.tolerance_mm)
 
 
 def _cell_mm(size_mm: float) -> float:
@@ -74,14 +93,19 @@ def _cell_mm(size_mm: float) -> float:
     )
 
 
-def _numbers(text: str, numbers: str, count: int) -> list[float]:
+def numbers_of(text: str, numbers: str, count: int, forms: str = _FORMS) -> list[float]:
+    """Return the numbers after the kind of a body.
+
+    Raises:
+        UsageError: too few or too many, or none.
+    """
     found = re.split(r"\s*,\s*", numbers.strip())
     try:
         values = [float(each) for each in found]
     except ValueError:
         values = []
     if len(values) != count or not all(map(math.isfinite, values)):
-        raise UsageError(f"'{text}' is no stock", hint=f"Write {_FORMS}, with {count} numbers (mm) here.")
+        raise UsageError(f"'{text}' is no body", hint=f"Write {forms}, with {count} numbers (mm) here.")
     return values
 
 

@@ -22,6 +22,7 @@ Floats = npt.NDArray[np.float64]
 _FAR = 1e300
 _BISECTIONS = 24
 _BOUNDS = 1024
+_CELLS_A_STEP = 5  # most are left as they are
 _REACH_CELLS = 0.6  # half the length of what is a short way
 
 
@@ -128,7 +129,7 @@ def _least(row: Floats, q2: float, slope: float, low: float, high: float) -> flo
 
 
 @compiled
-def _lowest(rows: Floats, q2: float, slope: float, before: float, after: float) -> float:
+def lowest(rows: Floats, q2: float, slope: float, before: float, after: float) -> float:
     """Return how low a body gets over a cell, against its tip at the foot of the cell.
 
     The way leads from `before` to `after` about that foot, which lies `sqrt(q2)` beside it.
@@ -164,7 +165,7 @@ def _bounds(rows: Floats, reach: float, bounds: Floats) -> None:
 
 
 @compiled
-def _span(begin: Floats, end: Floats, ux: float, uy: float, radius: float, y: float) -> tuple[float, float]:
+def span(begin: Floats, end: Floats, ux: float, uy: float, radius: float, y: float) -> tuple[float, float]:
     """Return from where to where along x a body of this radius covers the line `y` on its way."""
     low, high = _FAR, -_FAR
     for place in (begin, end):
@@ -197,7 +198,7 @@ def _sweep_chord(
     volume, depth, left, right = 0.0, 0.0, _FAR, -_FAR
     for iy in range(first_y, last_y + 1):
         y = grid.y0 + iy * grid.cell_mm
-        low, high = _span(begin, end, ux, uy, radius, y)
+        low, high = span(begin, end, ux, uy, radius, y)
         if low > high:
             continue
         first_x = max(0, math.ceil((low - grid.x0) / grid.cell_mm))
@@ -217,7 +218,7 @@ def _sweep_chord(
             along = dx * ux + dy * uy
             beside = dy * ux - dx * uy
             if length > 0.0:
-                z = begin[2] + slope * along + _lowest(rows, beside * beside, slope, -along, length - along)
+                z = begin[2] + slope * along + lowest(rows, beside * beside, slope, -along, length - along)
             else:
                 z = lowest_tip + _level(rows, math.sqrt(dx * dx + dy * dy))
             z = max(z, grid.bottom)
@@ -236,9 +237,22 @@ def _sweep_chord(
     figures[WIDTH_LOW_MM], figures[WIDTH_HIGH_MM] = (left, right) if depth > 0.0 else (0.0, 0.0)
 
 
-def _steps(grid: Grid, places: Floats, *_: object) -> int:
-    """Return about how many cells are looked at, where the radius is not known."""
-    return 50 * len(places)
+def _steps(grid: Grid, places: Floats, cutter: Floats, holder: Floats, *_: object) -> int:
+    """Return about how many cells are looked at: those within a body's radius of its ways, and in the field."""
+    size = np.array(grid.z.shape[::-1]) * grid.cell_mm
+    first = np.array([grid.x0, grid.y0]) - 0.5 * grid.cell_mm
+    low, high = np.minimum(places[:-1, :2], places[1:, :2]), np.maximum(places[:-1, :2], places[1:, :2])
+    found = len(places)
+    for rows in (cutter, holder):
+        if len(rows):
+            begin, end = (
+                np.maximum(low - rows[-1, TO_R], first),
+                np.minimum(high + rows[-1, TO_R], first + size),
+            )
+            found += int(
+                np.prod(np.maximum(end - begin, 0.0), axis=1).sum() / grid.cell_mm**2 / _CELLS_A_STEP
+            )
+    return found
 
 
 @entry(steps=_steps)

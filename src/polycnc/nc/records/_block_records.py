@@ -280,12 +280,12 @@ class BlockRecords:
         found[:, 2] *= (MM_PER_INCH if inch else 1.0) / 60.0
         return found
 
-    def spindle_turns(self, tags: npt.NDArray[np.int64]) -> npt.NDArray[np.bool_]:
-        """Tell of each of some tags, which have one context, whether the spindle turns with its block."""
+    def spindle_directions(self, tags: npt.NDArray[np.int64]) -> npt.NDArray[np.int8]:
+        """Return how the spindle turns with the blocks of some tags, which have one context: M3 1, M4 -1, else 0."""
         context = self._contexts.get(int(tags[0]) >> CONTEXT_SHIFT)
         if context is not None and context.speaks:
-            return np.not_equal(self.laser(tags)[:, 1], 0.0)
-        return np.full(len(tags), context is not None and context.modal.spindle.direction != 0)
+            return np.sign(self.laser(tags)[:, 1]).astype(np.int8)
+        return np.full(len(tags), 0 if context is None else context.modal.spindle.direction, np.int8)
 
     def source(self, tag: int) -> ProgramText | None:
         """Return the text that the block of a tag stands in."""

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from polycnc.runner._machining import Machined
+from polycnc.runner._machined import Machined
 from polycnc.stock import Cutting
 
 Floats = npt.NDArray[np.float64]
