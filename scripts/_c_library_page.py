@@ -32,6 +32,20 @@ is C99 on sockets; nothing else of Python or polycnc is in the program's process
 """
 
 _TAIL = """
+## Other languages
+
+Beside the header there are declarations for programs of other languages that use the same library:
+
+| file | for | texts | records of several | null pointers |
+| --- | --- | --- | --- | --- |
+| `NAME.pas` | Delphi, Free Pascal: a unit | `PAnsiChar` | the first element | none |
+| `NAME.cs` | C#: a class of `DllImport`, `Mcug3` for `mcug3` | `string`, what is written `StringBuilder` | an array | of arrays and texts |
+| `mcug3.bas` | Visual Basic 6: a module | `String` | the first element | `vbNullString` of texts |
+
+Names are those of C. One that is a word of the language, in Pascal and Visual Basic also one that is that of a type, has a `_` behind it
+(`AS_`), in C# an `@` before it. Unions of C# are their `bytes`. A Pascal program, a C# program, and a C program that loads the library by
+name while it runs are in `examples/`.
+
 ## The protocol
 
 Little-endian. The library says hello: `PNCCALL1`, width of a pointer, packing (0: each structure's own), two zeros, then its
@@ -43,8 +57,10 @@ outputs. No frame has more than 65,536 bytes. A frame that is none of these ends
 
 ## A trace
 
-`polycnc calls KIND --trace FILE` writes a line of JSON for each call: `time_s` of the machine, `call`, what went `in`, the
-`code`, what came `out`. Numbers and texts are as they are, structures hexadecimal bytes.
+`polycnc calls KIND --trace FILE` writes a line of JSON for each call: `time_s` of the machine, `client` (the first is 1), `call`,
+what went `in`, the `room` for what is written (null: a null pointer), the `code`, what came `out`. Numbers and texts are as they are,
+structures hexadecimal bytes. `polycnc calls KIND --replay FILE` carries the calls out on a new machine, at the same machine times, and
+lists those that answer otherwise; status 1 if there are any.
 
 ## What a program needs
 

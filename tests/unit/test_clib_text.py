@@ -15,7 +15,7 @@ from polycnc.servers.calls import LIBRARIES, build_command, build_library, libra
 from support.command import polycnc
 
 COUNTS = {"fanuc": 96, "imc": 53, "apci": 197}
-FILES = ("fwlib32.h", "fwlib32.c", "fwlib32.def", "fwlib32_win32.def")
+FILES = ("fwlib32.h", "fwlib32.c", "fwlib32.def", "fwlib32_win32.def", "fwlib32.pas", "fwlib32.cs")
 KINDS = sorted(LIBRARIES)
 FEW = [each if each == "fanuc" else pytest.param(each, marks=pytest.mark.long) for each in KINDS]
 WINDOWS = {"win32": "i686-w64-mingw32-gcc", "win64": "x86_64-w64-mingw32-gcc"}

@@ -37,6 +37,7 @@ from polycnc.machine._values import Form, Values
 from polycnc.on_demand import names_on_demand
 
 if TYPE_CHECKING:
+    from polycnc.machine._async_host import AsyncHost
     from polycnc.machine._describe import (
         AXIS_COLUMNS,
         axis_rows,
@@ -64,6 +65,7 @@ __all__ = [
     "AnyAxis",
     "Area",
     "Array",
+    "AsyncHost",
     "AxisConfig",
     "AxisState",
     "Clock",

@@ -346,6 +346,13 @@ class MachineConfig(StrictModel):
                     at=(*at, name),
                 )
 
+    def _repr_html_(self) -> str:
+        """Return the axes as a table, for notebooks."""
+        from polycnc.machine._describe import AXIS_COLUMNS, axis_rows
+        from polycnc.web import html_table
+
+        return html_table(f"{self.name}: {self.description}".rstrip(": "), AXIS_COLUMNS, axis_rows(self))
+
     @property
     def axis_names(self) -> tuple[str, ...]:
         """Return the names of the axes, in their order."""

@@ -236,7 +236,7 @@ def _to_end(
 ) -> ProgramError | None:
     """Run a program to its end; return the error of one that waits or loops without end."""
     if settings.feed_override != 1.0:
-        execution.feed_override = settings.feed_override
+        execution.overrides.feed = settings.feed_override
     if control is None:
         run_to_end(execution, every_cycle=record.every_cycle, progress=record.asked)
         return None
@@ -304,7 +304,7 @@ def _result(
         },
         alarms=alarms,
         messages=[RunMessage(m.text, m.line, m.count) for m in channel.messages.all()],
-        tool_times=execution.tool_times,
+        tool_times=execution.reading.tool_times,
         operations=log.operations(execution),
         events=log.events(),
         source=execution.program,

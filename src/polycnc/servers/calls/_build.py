@@ -9,7 +9,15 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from polycnc import __version__
-from polycnc.controllers.library.clib import CLibrary, write_definitions, write_header, write_source
+from polycnc.controllers.library.clib import (
+    CLibrary,
+    write_basic,
+    write_csharp,
+    write_definitions,
+    write_header,
+    write_pascal,
+    write_source,
+)
 from polycnc.errors import UsageError
 
 _MOST_SHOWN = 400
@@ -74,7 +82,7 @@ def target_here() -> str:
 
 
 def write_library(library: CLibrary, folder: Path) -> list[Path]:
-    """Write header, source and definitions into a folder; return the files.
+    """Write header, source, definitions and declarations for other languages into a folder; return the files.
 
     Raises:
         UsageError: They cannot be written, or files of these names are there that are not of `polycnc clib`.
@@ -84,13 +92,17 @@ def write_library(library: CLibrary, folder: Path) -> list[Path]:
         f"{library.name}.c": write_source(library, __version__),
         f"{library.name}.def": write_definitions(library),
         f"{library.name}_win32.def": write_definitions(library, decorated=True),
+        f"{library.name}.pas": write_pascal(library),
+        f"{library.name}.cs": write_csharp(library),
     }
+    if library.basic:
+        texts[f"{library.name}.bas"] = write_basic(library)
     made = [row.made.format(name=library.name) for row in TARGETS.values()]
     try:
         _refuse_foreign(folder, f"{library.name}.c", [*texts, *made, f"{library.name}.lib"])
         folder.mkdir(parents=True, exist_ok=True)
         for name, text in texts.items():
-            (folder / name).write_text(text, "utf-8")
+            (folder / name).write_bytes(text.encode())
     except OSError as error:
         raise UsageError(
             f"{folder}: cannot be written: {error.strerror}", hint="Name another folder with -o."

@@ -3,7 +3,14 @@
 from polycnc.servers.machines._connections import Patience, notice_loss, tell_errors
 from polycnc.servers.machines._door import LOOPBACK, Door, DoorKind, Wanted
 from polycnc.servers.machines._log import Log
-from polycnc.servers.machines._machine import AS_USUAL, MachineError, ServedMachine, Treatment
+from polycnc.servers.machines._machine import (
+    AS_USUAL,
+    MachineError,
+    ServedMachine,
+    Treatment,
+    machines_of_path,
+    treatment_of,
+)
 from polycnc.servers.machines._owner import HostOwner, Keeper, Kept, Owner
 from polycnc.servers.machines._programs import MemoryPrograms, Programs
 from polycnc.servers.machines._scenario import Nothing, Scenario, ServedDevice
@@ -47,7 +54,9 @@ __all__ = [
     "Values",
     "Wanted",
     "Watch",
+    "machines_of_path",
     "no_such",
     "notice_loss",
     "tell_errors",
+    "treatment_of",
 ]

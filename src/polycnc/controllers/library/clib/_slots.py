@@ -95,6 +95,7 @@ class CLibrary:
         opens_at: The function that connects to an address, its first arguments.
         frees: The function that lets a handle go.
         stdcall: Whether 32-bit Windows programs clean no stack.
+        basic: Whether its maker has a module for Visual Basic.
         declarations: C types that prototypes use, behind the structures.
         helpers: C functions that extents use.
         in_bytes: Whether a length counts bytes; else elements.
@@ -120,6 +121,7 @@ class CLibrary:
     opens_at: str = ""
     frees: str = ""
     stdcall: bool = True
+    basic: bool = False
     declarations: str = ""
     helpers: str = ""
     in_bytes: bool = True

@@ -1,11 +1,12 @@
 // The operator's page: one screen that shows what the stream sends and asks the commands of REST.
 import { TEXTS } from "/texts.js";
 import { Pages } from "/pages.js";
+import { Charts } from "/charts.js";
 import { Path } from "/path.js";
 
 const SWITCHES = ["single_block", "dry_run", "optional_stop", "block_delete", "machine_lock"];
 const RATES = [0, 0.1, 0.5, 1, 2, 5, 10, 50];
-const RATE = 20, STALE_MS = 900, AGAIN_MS = 1000, BEAT_MS = 200, MOST_LINES = 2000;
+const RATE = 20, STALE_MS = 900, AGAIN_MS = 1000, BEAT_MS = 200, MOST_LINES = 2000, REDRAW_MS = 300;
 const $ = (id) => document.getElementById(id);
 const make = (tag, attributes = {}, ...inside) => {
   const made = document.createElement(tag);
@@ -46,7 +47,7 @@ customElements.define("cnc-axes", Axes);
 
 const state = { machine: "", status: null, socket: null, seen: 0, lines: "", held: new Map(), stamp: 0, chosen: 0, breakpoints: [] };
 let pages = null;
-const path = new Path($("path"));
+const path = new Path($("path"), $("views")), charts = new Charts($("charts"));
 const url = (rest) => `/api/machines/${encodeURIComponent(state.machine)}/${rest}`;
 
 function say(text) { put($("said"), text); clearTimeout(say.timer); say.timer = setTimeout(() => put($("said"), ""), 6000); }
@@ -81,8 +82,8 @@ function show(status) {
   $("run").dataset.state = channel.run_state;
   put($("run"), channel.run_state.replaceAll("_", " "));
   document.querySelector("cnc-axes").show(status.axes);
-  const { X, Y } = status.axes;
-  if (X && Y) path.add(X.machine, Y.machine);
+  path.at(status.axes, channel.block?.program === state.lines ? channel.block.line : 0, ["active", "hold", "stopped"].includes(channel.run_state));
+  charts.add(status, channel.feed);
   const alarms = status.alarms.map((alarm) => `${alarm.number} ${alarm.text}`).join("\n");
   if ($("alarms").dataset.said !== alarms) {
     $("alarms").dataset.said = alarms;
@@ -131,6 +132,7 @@ function showLine(channel) {
 async function loadLines(name) {
   state.lines = name;
   $("lines").replaceChildren();
+  drawPath();
   if (!name) return;
   const answer = await fetch(url(`programs/${encodeURIComponent(name)}`)).catch(() => null);
   if (!answer?.ok || state.lines !== name) return;
@@ -138,6 +140,19 @@ async function loadLines(name) {
   $("lines").replaceChildren(...lines.map((line, index) => make("li", { onclick: () => choose(index + 1) }, line)));
   state.chosen = 0;
   showBreakpoints();
+}
+
+// Where the selected program goes, asked anew when it, a tool or an offset has changed.
+function drawPath() {
+  clearTimeout(drawPath.timer);
+  drawPath.timer = setTimeout(async () => {
+    const name = state.lines;
+    if (!name) { path.show(null); return; }
+    const answer = await fetch(url(`path?program=${encodeURIComponent(name)}`)).catch(() => null);
+    if (state.lines !== name || !answer) return;
+    const told = await answer.json();
+    path.show(answer.ok ? told : null, answer.ok ? told.errors[0] ?? "" : told.detail);
+  }, REDRAW_MS);
 }
 
 function choose(line) {
@@ -161,6 +176,7 @@ function toggleBreakpoint() {
 function showInventory(parts) {
   pages?.inventory(parts);
   if (parts.breakpoints) { state.breakpoints = parts.breakpoints; showBreakpoints(); }
+  if (parts.tools || parts.offsets) drawPath();
   if (!parts.programs) return;
   const chosen = $("names").value;
   $("names").replaceChildren(...parts.programs.map((entry) => make("option", { value: entry.name }, `${entry.name} ${entry.comment}`)));
@@ -305,7 +321,7 @@ async function begin() {
   const machines = await (await fetch("/api/machines")).json();
   $("machine").replaceChildren(...machines.map((each) => make("option", { value: each.name }, each.name)));
   state.machine = machines[0].name;
-  $("machine").onchange = (event) => { releaseAll(); state.machine = event.target.value; path.clear(); open(); };
+  $("machine").onchange = (event) => { releaseAll(); state.machine = event.target.value; path.clear(); charts.clear(); open(); };
   await open();
 }
 async function open() {
