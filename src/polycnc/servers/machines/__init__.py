@@ -1,9 +1,9 @@
 """Served machines: a device, who lets its time pass, what happens to it by itself, and the doors to it."""
 
-from polycnc.servers.machines._connections import Patience, notice_loss, tell_errors
+from polycnc.servers.machines._connections import Patience, notice_loss, peers_of, tell_errors
 from polycnc.servers.machines._door import LOOPBACK, Door, DoorKind, Wanted
 from polycnc.servers.machines._log import Log
-from polycnc.servers.machines._machine import AS_USUAL, MachineError, ServedMachine, Treatment
+from polycnc.servers.machines._machine import AS_USUAL, MachineError, OpenDoor, ServedMachine, Treatment
 from polycnc.servers.machines._owner import HostOwner, Keeper, Kept, Owner
 from polycnc.servers.machines._programs import MemoryPrograms, Programs
 from polycnc.servers.machines._scenario import Nothing, Scenario, ServedDevice
@@ -35,6 +35,7 @@ __all__ = [
     "MemoryPrograms",
     "NamedValue",
     "Nothing",
+    "OpenDoor",
     "Owner",
     "Patience",
     "Programs",
@@ -49,5 +50,6 @@ __all__ = [
     "Watch",
     "no_such",
     "notice_loss",
+    "peers_of",
     "tell_errors",
 ]
