@@ -31,9 +31,9 @@ def cubic_slope(row: Floats, j: int, way: float, at: float) -> float:
 
 
 @compiled
-def cubic_bounds(row: Floats, j: int, way: float, length: float) -> Pair:
+def cubic_bounds(row: Floats, j: int, way: float, length_mm: float) -> Pair:
     """Return the greatest |dp/ds| and |d2p/ds2| of axis `j`, by the differences of its control points."""
     first, second = row[FIRST + j], row[SECOND + j]
-    slope = 3.0 * max(abs(first), abs(second - first), abs(way - second)) / length
-    bend = 6.0 * max(abs(second - 2.0 * first), abs(way - 2.0 * second + first)) / (length * length)
+    slope = 3.0 * max(abs(first), abs(second - first), abs(way - second)) / length_mm
+    bend = 6.0 * max(abs(second - 2.0 * first), abs(way - 2.0 * second + first)) / (length_mm * length_mm)
     return slope, bend
