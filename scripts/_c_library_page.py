@@ -46,6 +46,21 @@ Names are those of C. One that is a word of the language, in Pascal and Visual B
 (`AS_`), in C# an `@` before it. Unions of C# are their `bytes`. A Pascal program, a C# program, and a C program that loads the library by
 name while it runs are in `examples/`.
 
+## In the program's own process
+
+`polycnc clib KIND --in-process` (Linux of 64 bits, a Python with a shared library and its headers) builds the same library with the
+machines in it: the interpreter that ran the command is loaded with the first call, `POLYCNC_PYTHON` names another one. Frames,
+answers and bytes are the same; no server is needed, and `POLYCNC_CALLS` has no effect.
+
+| what | value |
+| --- | --- |
+| machines | those of the library's kind in the file of `polycnc serve` that `POLYCNC_SERVED` names, else one as `polycnc calls KIND` has it; doors, programs, rates and scenarios of the file are left aside |
+| time | passes only when the program reads the same again in the same cycle, a cycle each time: a program that spins ends at once, one that sleeps sees no time pass, and the same calls give the same bits |
+| a fork | the child must not call the library |
+| the interpreter | does not end before the program; signals stay the program's |
+
+It is for tests and debuggers. A crash of the program takes the machine with it, and the first call takes a second or two.
+
 ## The protocol
 
 Little-endian. The library says hello: `PNCCALL1`, width of a pointer, packing (0: each structure's own), two zeros, then its
@@ -72,7 +87,7 @@ refused.
 
 ## What there is not
 
-No library in the process (the interpreter is never loaded into the program), no 4-byte packing of later headers, no routine
+No 4-byte packing of later headers, no routine
 of the program that an interrupt calls, no booting of a served board. Functions that no manual of these systems has are not
 exported: the loader names them.
 """

@@ -51,7 +51,7 @@ class Rig:
         return CallClient(self.find, self.told.append, **more)  # type: ignore[arg-type]
 
     def find(self, name: str) -> Caller | None:
-        return LIBRARIES["fanuc"].make(FWLIB, [self.device]) if name == "fwlib32" else None
+        return LIBRARIES["fanuc"].make(FWLIB, [self.device], None) if name == "fwlib32" else None
 
 
 def answers(sent: bytes) -> list[tuple[int, int, bytes]]:
@@ -260,7 +260,7 @@ def test_calls_are_traced(tmp_path: Path) -> None:
 
 def _replayed(path: Path) -> list[tuple[str, bool]]:
     device = PowerMate(3)
-    found = replay(path, device, lambda: LIBRARIES["fanuc"].make(FWLIB, [device]))
+    found = replay(path, device, lambda: LIBRARIES["fanuc"].make(FWLIB, [device], None))
     return [(each.call, each.is_equal) for each in found]
 
 
@@ -326,7 +326,7 @@ def test_a_line_that_is_none_of_a_trace_is_refused_with_its_place(
     path = tmp_path / "calls.jsonl"
     path.write_text(f"{GOOD}\n\n{line}\n")
     with pytest.raises(UsageError, match=f":3: .*{told}|:3: {told}"):
-        list(replay(path, shared().device, lambda: LIBRARIES["fanuc"].make(FWLIB, [shared().device])))
+        list(replay(path, shared().device, lambda: LIBRARIES["fanuc"].make(FWLIB, [shared().device], None)))
 
 
 def test_a_trace_that_cannot_be_read_is_refused(tmp_path: Path) -> None:

@@ -24,6 +24,9 @@ def clib_command(
         str | None, typer.Option(help="linux, win32, win64 or macos; absent: this computer.", metavar="NAME")
     ] = None,
     source_only: Annotated[bool, typer.Option(help="Write header and source, and build nothing.")] = False,
+    in_process: Annotated[
+        bool, typer.Option(help="Have the machines in the program's own process (Linux, 64 bits).")
+    ] = False,
     missing: Annotated[
         Path | None,
         typer.Option(
@@ -39,11 +42,11 @@ def clib_command(
         _say_missing(missing, library)
         return
     wanted = target or target_here()
-    build_command(library, wanted)  # refuses a target that there is not
-    for path in write_library(library, folder):
+    build_command(library, wanted, in_process=in_process)  # refuses a target that there is not
+    for path in write_library(library, folder, in_process=in_process):
         say(str(path))
     if not source_only:
-        say(str(build_library(library, folder, wanted)))
+        say(str(build_library(library, folder, wanted, in_process=in_process)))
 
 
 def _say_missing(program: Path, library: CLibrary) -> None:

@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 from polycnc.controllers.library import Opaque, Session
 from polycnc.controllers.library.clib import Call, CLibrary, Slot, Way
 from polycnc.errors import UsageError
-from polycnc.servers.calls._frames import CallError, Done, Given, Layout
+from polycnc.servers.calls._frames import NULL, CallError, Done, Given, Layout
 
 _MOST_HANDLES = 65536  # that a client has ever had
 _CONTENT = attrgetter("content")
@@ -47,6 +47,8 @@ class _Prepared:
     put: tuple[_Put, ...]
     changed: bool
     """Whether records are written, of which some may be as before."""
+    quick: Callable[[bytes], Done] | None = None
+    """Carries out a call that reads through no pointer, given a frame of the usual size."""
 
 
 @dataclass(slots=True)
@@ -62,15 +64,17 @@ class Caller:
     _handles: dict[int, Any] = field(default_factory=dict)
     _prepared: dict[int, _Prepared] = field(default_factory=dict)
 
-    def carry_out(self, number: int, packed: bytes) -> tuple[Call, list[Given], Done]:
+    def carry_out(self, number: int, packed: bytes) -> tuple[Layout, Done]:
         """Carry out a call.
 
         Raises:
             CallError: There is no such call, or its arguments are not those of the table; nothing is carried out.
         """
         prepared = self._prepared.get(number) or self._prepare(number)
-        given = prepared.layout.unpacked(packed)
-        return prepared.call, given, self._done(prepared, given)
+        layout, quick = prepared.layout, prepared.quick
+        if quick is not None and len(packed) == layout.whole.size:  # type: ignore[union-attr]
+            return layout, quick(packed)
+        return layout, self._done(prepared, layout.unpacked(packed))
 
     def carry_out_given(self, call: Call, given: list[Given]) -> Done:
         """Carry out a call whose arguments are there."""
@@ -93,7 +97,31 @@ class Caller:
             tuple(_Put(k, each, self._putter(each)) for k, each in slots if each.writes),
             any(each.way is Way.RECORDS for each in call.slots),
         )
+        made.quick = self._quick(made)
         return made
+
+    def _quick(self, prepared: _Prepared) -> Callable[[bytes], Done] | None:
+        """Return what does the same as `_done`, without an object for each argument; None where something is read."""
+        call, whole = prepared.call, prepared.layout.whole
+        if whole is None or prepared.held or prepared.changed:
+            return None
+        takes = [self._made(each, k) for k, each in enumerate(call.slots) if each.argument.passed]
+        puts = [(k, each, self._putter(each)) for k, each in enumerate(call.slots) if each.writes]
+        if any(not each.argument.returned and each.way is not Way.RECORD for _, each, _ in puts):
+            return None
+        filled = {k: number for number, (k, _) in enumerate(takes)}
+        contents = [(k, -1 if each.argument.returned else filled[k], put) for k, each, put in puts]
+        return _quickly(prepared, self.session, takes, contents)
+
+    def _made(self, slot: Slot, place: int) -> tuple[int, Callable[[Any], Any] | None]:
+        """Return where an argument is, and what makes of it what the façade is given; None of the number itself."""
+        if not slot.reads:
+            element = slot.element
+            return place, (lambda _: element()) if slot.way is Way.RECORD else (lambda _: None)
+        handles = self._handles
+        return place, (lambda number: handles.get(number, number)) if isinstance(
+            slot.argument.type, Opaque
+        ) else None
 
     def _done(self, prepared: _Prepared, given: list[Given]) -> Done:
         name = prepared.call.function.name
@@ -180,6 +208,42 @@ class Caller:
             raise CallError(f"more than {_MOST_HANDLES} handles")
         self._handles[number] = handle
         return number
+
+
+def _quickly(
+    prepared: _Prepared,
+    session: Session,
+    takes: list[tuple[int, Callable[[Any], Any] | None]],
+    contents: list[tuple[int, int, Callable[[Any], bytes]]],
+) -> Callable[[bytes], Done]:
+    """Return what carries out a call: `takes` are its arguments, `contents` its outputs, the result's own as -1."""
+    whole, function = prepared.layout.whole, prepared.function
+    assert whole is not None
+    places = [place for place, _, _ in contents]
+    name, null = prepared.call.function.name, prepared.null
+    is_void = prepared.call.function.result == "void"
+
+    def quick(packed: bytes) -> Done:
+        values = whole.unpack(packed)
+        for place in places:
+            if values[place] == NULL:
+                return Done(name, null, [], True)
+        given = [values[place] if made is None else made(values[place]) for place, made in takes]
+        session.refused = False
+        try:
+            answer = function(*given)
+        except UsageError:
+            return Done(name, null, [], True)
+        results = iter(answer if isinstance(answer, tuple) else (answer,))
+        code = None if is_void else next(results)
+        if session.refused:
+            return Done(name, code, [], True)
+        outputs = [
+            put(next(results) if at < 0 else given[at])[: values[place]] for place, at, put in contents
+        ]
+        return Done(name, code, outputs)
+
+    return quick
 
 
 def _hold(values: dict[str, Any], given: Given) -> None:

@@ -90,7 +90,7 @@ class CallsServer:
             return None
         machines = [each for each in self._machines if each.kind == kind]
         served = LIBRARIES[kind]
-        return served.make(served.load(), [each.device for each in machines]), machines
+        return served.make(served.load(), [each.device for each in machines], None), machines
 
     def tell(self, sentence: str) -> None:
         """Write what was refused into the log."""
