@@ -18,7 +18,7 @@ is C99 on sockets; nothing else of Python or polycnc is in the program's process
 | header | C11 and C++17; the sizes and offsets of all structures are asserted when it is compiled. `PC_LONG` has 32 bits: it is `long` where that has 32, else `int` |
 | where the machine is | the environment variable `POLYCNC_CALLS=HOST:PORT`; else the line `calls = "HOST:PORT"` of `polycnc.toml` beside the program; else 127.0.0.1:{PORT} |
 | names | exported as they are, without decoration, also in 32-bit Windows libraries, whose functions are `stdcall` |
-| structures | packed as the manuals have them |
+| structures | packed as the manuals have them; for programs made with later headers of `fwlib32`, which pack to 4 bytes, the library is written with `--packing 4`. A length counts the program's bytes: ranges of macro variables are `8 + 8 * n` instead of `6 + 6 * n` |
 | clients | one connection is one program of the library, with its own handles; calls of several threads are carried out one after the other |
 | time | passes at the rate of the served machine |
 | waiting | 10 s for an answer; with `cnc_allclibhndl3` as long as the program says |
@@ -63,7 +63,7 @@ It is for tests and debuggers. A crash of the program takes the machine with it,
 
 ## The protocol
 
-Little-endian. The library says hello: `PNCCALL1`, width of a pointer, packing (0: each structure's own), two zeros, then its
+Little-endian. The library says hello: `PNCCALL1`, width of a pointer, packing (0: as the manual has each structure), two zeros, then its
 name, its version and a hash of its table, 16 bytes each. The answer is `PNCCALL1` and a code of 4 bytes, 0 if all is well. A
 call is its length (4 bytes, of what follows), number and serial number (2 each), then the arguments: a number as it is, what
 is read behind a pointer as a size (4 bytes, 0xFFFFFFFF: null) and the bytes, what is written as the room for it. The answer is
@@ -87,7 +87,7 @@ refused.
 
 ## What there is not
 
-No 4-byte packing of later headers, no routine
+No routine
 of the program that an interrupt calls, no booting of a served board. Functions that no manual of these systems has are not
 exported: the loader names them.
 """

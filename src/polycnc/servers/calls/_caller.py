@@ -7,8 +7,8 @@ from dataclasses import dataclass, field
 from operator import attrgetter
 from typing import Any, NamedTuple
 
-from polycnc.controllers.library import Opaque, Session
-from polycnc.controllers.library.clib import Call, CLibrary, Slot, Way
+from polycnc.controllers.library import Opaque, Session, repacked
+from polycnc.controllers.library.clib import Call, CLibrary, Slot, Way, alike, copied, length_in
 from polycnc.errors import UsageError
 from polycnc.servers.calls._frames import NULL, CallError, Done, Given, Layout
 
@@ -47,6 +47,8 @@ class _Prepared:
     put: tuple[_Put, ...]
     changed: bool
     """Whether records are written, of which some may be as before."""
+    lengths: tuple[tuple[str, Any, Any], ...] = ()
+    """Arguments that count the bytes of a structure that the program packs otherwise: name, its structure, ours."""
     quick: Callable[[bytes], Done] | None = None
     """Carries out a call that reads through no pointer, given a frame of the usual size."""
 
@@ -97,13 +99,28 @@ class Caller:
             tuple(_Put(k, each, self._putter(each)) for k, each in slots if each.writes),
             any(each.way is Way.RECORDS for each in call.slots),
         )
+        made.lengths = tuple(self._lengths(call))
         made.quick = self._quick(made)
         return made
+
+    def _lengths(self, call: Call) -> Iterator[tuple[str, Any, Any]]:
+        for slot in call.slots:
+            if (cls := self._other(slot)) is not None and slot.way is Way.RECORD:
+                for each in call.function.arguments:
+                    if each.length_of == slot.argument.name:
+                        yield each.name, slot.element, cls
+
+    def _other(self, slot: Slot) -> Any:
+        """Return the structure as the façade has it where the program packs it otherwise, None where both are alike."""
+        if not self.library.packing or not hasattr(slot.element, "_table_"):
+            return None
+        cls = slot.element.variant_of
+        return None if alike(slot.element, cls) else cls
 
     def _quick(self, prepared: _Prepared) -> Callable[[bytes], Done] | None:
         """Return what does the same as `_done`, without an object for each argument; None where something is read."""
         call, whole = prepared.call, prepared.layout.whole
-        if whole is None or prepared.held or prepared.changed:
+        if whole is None or prepared.held or prepared.changed or prepared.lengths:
             return None
         takes = [self._made(each, k) for k, each in enumerate(call.slots) if each.argument.passed]
         puts = [(k, each, self._putter(each)) for k, each in enumerate(call.slots) if each.writes]
@@ -131,6 +148,8 @@ class Caller:
         values = {each.name: each.value(given[each.place]) for each in prepared.taken}
         for place in prepared.held:
             _hold(values, given[place])
+        for counter, packed, cls in prepared.lengths:
+            values[counter] = length_in(packed, cls, values[counter])
         self.session.refused = False
         try:
             answer = prepared.function(*values.values())
@@ -177,7 +196,13 @@ class Caller:
             case Way.TEXT:
                 return lambda content: content.split(b"\0", 1)[0].decode("latin-1")
             case Way.MEMORY:
-                return lambda content: content
+                return self._from_packed(slot)
+            case Way.RECORD if (cls := self._other(slot)) is not None:
+                return lambda content: copied(
+                    slot.element.from_buffer_copy(content[: slot.width].ljust(slot.width, b"\0")),
+                    cls,
+                    self.library.selected,
+                )
             case Way.RECORD:
                 width, made = slot.width, slot.element.from_buffer_copy
                 return lambda content: made(content[:width].ljust(width, b"\0"))
@@ -197,7 +222,25 @@ class Caller:
                 return lambda value: str(value).encode("latin-1", "replace") + b"\0"
             case Way.RECORDS:
                 return lambda value: b"".join(bytes(each) for each in value)
+            case Way.RECORD if self._other(slot) is not None:
+                return self._to_packed
         return bytes
+
+    def _to_packed(self, value: Any) -> bytes:
+        """Return a structure of the façade as the program packs it; it may be a variant of the table's."""
+        kind: Any = type(value)
+        cls = repacked(kind, self.library.packing)
+        return bytes(copied(value, cls, self.library.selected))
+
+    def _from_packed(self, slot: Slot) -> Callable[[Any], Any]:
+        """Return what makes memory of the façade of memory of the program."""
+        cls = self._other(slot)
+        if cls is None:
+            return lambda content: content
+        selected = self.library.selected
+        return lambda content: b"".join(
+            bytes(copied(each, cls, selected)) for each in _records(slot, content)
+        )
 
     def _number(self, handle: Any) -> int:
         """Return the number that stands for a handle; 0 for none."""

@@ -54,13 +54,13 @@ def _text(said: bytes) -> str:
 class CallClient:
     """Take the bytes of one client and return what it gets; after `ended` it gets nothing more.
 
-    `find` returns the caller for a library, or None if no machine here has it. `tell` is told in a sentence what was
-    refused. Whole frames are carried out one after the other. `treat` counts a call and says how it is
-    to be treated: what is dropped ends the connection and is not carried out, and `delay_s` is how much later all
+    `find` returns the caller for a library and a packing, or None if no machine here has it. `tell` is told in a
+    sentence what was refused. Whole frames are carried out one after the other. `treat` counts a call and says how it
+    is to be treated: what is dropped ends the connection and is not carried out, and `delay_s` is how much later all
     answers of the last bytes come.
     """
 
-    find: Callable[[str], Caller | None]
+    find: Callable[[str, int], Caller | None]
     tell: Callable[[str], None] = lambda _: None
     trace: Trace | None = None
     now_s: Callable[[], float] = lambda: 0.0
@@ -142,7 +142,7 @@ class CallClient:
     def _welcomed(self, said: bytes) -> bytes:
         """Answer a hello: with 0, or with the code that every call gets."""
         hello = Hello.of(said)
-        caller = self.find(hello.name)
+        caller = self.find(hello.name, hello.packing)
         if caller is None:
             raise CallError(f"no machine here has the library {hello.name}")
         refusal = _unfit(hello, caller.library)
@@ -157,6 +157,8 @@ class CallClient:
 
 def _unfit(hello: Hello, library: CLibrary) -> str:
     """Return what is wrong with a library, "" if nothing is."""
+    if hello.packing != library.packing:
+        return f"{hello.name} packs structures to {hello.packing} bytes"
     if hello.table != library.table_hash:
         return f"{hello.name} {hello.version} has another table of functions: make it anew with polycnc clib"
-    return f"{hello.name} packs structures to {hello.packing} bytes" if hello.packing else ""
+    return ""

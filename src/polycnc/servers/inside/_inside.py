@@ -42,12 +42,14 @@ class Inside:
         if found is not None and found.caller is not None:
             LIBRARIES[self._kind].end(found.caller.session)
 
-    def _find(self, name: str) -> Caller | None:
+    def _find(self, name: str, packing: int) -> Caller | None:
         if not self.devices:
             return None
         served = LIBRARIES[self._kind]
         library = served.load()
-        return served.make(library, self.devices, _POLL) if library.name == name else None
+        if library.name != name:
+            return None
+        return served.make(library.packed(packing) or library, self.devices, _POLL)
 
 
 def inside(name: str) -> Inside:

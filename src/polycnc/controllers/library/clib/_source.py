@@ -50,7 +50,7 @@ def _head(library: CLibrary, version: str, python: str) -> Iterator[str]:
         ("PC_NAME", f'"{library.name}"'),
         ("PC_VERSION", f'"{version[: _VERSION_SIZE - 1]}"'),
         ("PC_PORT", f'"{PORT}"'),
-        ("PC_PACKING", "0 /* of each structure, as the manual has it */"),
+        ("PC_PACKING", f"{library.packing} /* 0: each structure as the manual has it */"),
         ("PC_HELLO_SIZE", HELLO),
         ("PC_HANDLES", int(bool(library.through))),
         ("PC_CODE_NOBODY", f"({library.nobody})"),
