@@ -88,14 +88,17 @@ class CallsServer:
         line.connection_made(transport)
         line.take(data)
 
-    def find(self, name: str) -> tuple[Caller, list[ServedMachine]] | None:
-        """Return a caller of a library, and the machines that it reaches."""
+    def find(self, name: str, packing: int) -> tuple[Caller, list[ServedMachine]] | None:
+        """Return a caller of a library in a packing, else in the manual's, and the machines that it reaches."""
         kind = self._libraries.get(name)
         if kind is None:
             return None
         machines = [each for each in self._machines if each.kind == kind]
         served = LIBRARIES[kind]
-        return served.make(served.load(), [each.device for each in machines]), machines
+        library = served.load()
+        return served.make(
+            library.packed(packing) or library, [each.device for each in machines], None
+        ), machines
 
     def tell(self, sentence: str) -> None:
         """Write what was refused into the log."""
@@ -118,8 +121,8 @@ class _Line(asyncio.BufferedProtocol):
         self._limit: asyncio.TimerHandle | None = None
         self._buffer = memoryview(bytearray(_READ))
 
-    def _find(self, name: str) -> Caller | None:
-        found = self._server.find(name)
+    def _find(self, name: str, packing: int) -> Caller | None:
+        found = self._server.find(name, packing)
         if found is None:
             return None
         caller, self._machines = found
