@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 
 import pytest
 
-from polycnc.cnc import Answer, Function
+from polycnc.cnc import Answer, Function, RunState
 from polycnc.controllers.bosch import Pnc
 from polycnc.controllers.bosch.ncs import OVERVIEW, Coupling, Mode
 from polycnc.nc.cpl import BLOCKED, Box, Field
@@ -405,3 +405,26 @@ def test_an_axis_in_no_channel_is_asynchronous_from_the_start(tmp_path: Path) ->
     pnc = Pnc(tmp_path, tmp_path / "two.toml", channels=[("X",)])
     assert pnc.status().channel.axes == ("X",)
     pnc.close()
+
+
+def test_only_what_is_asked_for_is_read(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A program that waits for data of a channel has no axis read, whatever else the control shows."""
+    (tmp_path / "main.npg").write_text("10 DIM B%(4)\n20 V%=0\n30 R%=MCODS(31,1,V%,B%,1)\n40 GOTO 30\nM30\n")
+    made = Pnc(tmp_path)
+    made.select_program("main.npg")
+    made.cycle_start()
+    made.advance(3)
+    read: list[int] = []
+    shown = made.system.shown
+    axis = shown.image.axes._read  # type: ignore[attr-defined]
+
+    def noted(number: int) -> Any:
+        read.append(number)
+        return axis(number)
+
+    monkeypatch.setattr(shown.image.axes, "_read", noted)
+    assert made.advance(7) == 7
+    assert made.run_state(1) is RunState.ACTIVE
+    assert read == []
+    assert shown.renew().axes[2].number == 2
+    assert read == [2]
