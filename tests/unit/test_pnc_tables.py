@@ -725,19 +725,41 @@ def test_what_was_programmed_last_of_each_group_is_told_by_any_of_it(living: Liv
 def test_an_index_is_one_of_the_channel_unless_the_type_says_physical(turned: Living) -> None:
     """X is coordinate 3 and physical axis 4; there is no coordinate 4 and no physical axis 3."""
     before = "N1 G18 G92 X-7\nN2 G60 X25.4\nN3 G138 X50.8 R0\nN4 G38 X1.25\nN5 G1 X5 F9000\n6 WAIT"
-    for function, first in (
-        ("COF", ""),
-        ("DPC", ""),
-        ("SCL", "2,"),
-        ("CPOS", ""),
-        ("AXO", ""),
-        ("WPOS", ""),
-        ("MPOS", ""),
-    ):
-        calls = [f"{function}({first}{each})" for each in ("3", "3,1", "4,0", '"X"')]
-        found = told(turned, before, *calls)
-        assert found == [found[0]] * 4, function
-        assert found[0] not in (0, 1), function
-        for wrong in ("3,0", "4,1", "4", "3,2"):
-            what = stopped(turned, f"A={function}({first}{wrong})")
-            assert what.removesuffix(" [1938]") == "INVALID PARAMETER", (function, wrong)
+    functions = {"COF": "", "DPC": "", "SCL": "2,", "CPOS": "", "AXO": "", "WPOS": "", "MPOS": ""}
+    given = [("3", "3,1", "4,0", '"X"')] * len(functions)
+    calls = [
+        f"{name}({functions[name]}{each})"
+        for name, kinds in zip(functions, given, strict=True)
+        for each in kinds
+    ]
+    found = told(turned, before, *calls)
+    for place, name in enumerate(functions):
+        values = found[4 * place : 4 * place + 4]
+        assert values == [values[0]] * 4, name
+        assert values[0] not in (0, 1), name
+        for wrong in ("3,0", "4"):
+            what = stopped(turned, f"A={name}({functions[name]}{wrong})")
+            assert what.removesuffix(" [1938]") == "INVALID PARAMETER", (name, wrong)
+
+
+@pytest.mark.covers(
+    "cpl.param.1003_00001", "cpl.param.1003_00002", "cpl.param.1003_00012", "cpl.param.1015_00100"
+)
+@pytest.mark.covers(
+    "cpl.param.7010_00010", "cpl.param.7010_00020", "cpl.param.1020_00001", "cpl.MCA", "cpl.ex.2077"
+)
+@pytest.mark.covers("cpl.param.1001_00004", "cpl.param.7060_00010", "cpl.param.7060_00020")
+def test_parameters_of_axes_have_an_element_for_each_physical_axis(living: Living) -> None:
+    texts = {"100300001": ("X", "Z", "", "C", "X2", "", "U"), "701000010": ("X", "Z", "C"),
+             "701000020": ("X", "Z", "C", "X2", "U"), "706000010": ("G1", "G17", "G40", "G53", "G71", "G90", "G94"),
+             "706000020": ("G1", "G17", "G40", "G53", "G71", "G90", "G94")}  # fmt: skip
+    numbers = {"100300002": (1, 1, 0, 1, 2, 0, 2), "100300004": (1, 1, 0, 2, 1, 0, 1),
+               "100300012": (1, 1, 0, 1, 1, 0, 1)}  # fmt: skip
+    lines = ["1 DIM N$(40)"]
+    for number, names in texts.items():
+        lines += [f'2 N$=MCA({number},{k}) : C{number[-6:]}{k}?=N$="{name}"' for k, name in enumerate(names)]
+    asked = [f"?C{number[-6:]}{k}?" for number, names in texts.items() for k in range(len(names))]
+    more = [f"MCA({number},{k})" for number, values in numbers.items() for k in range(len(values))]
+    found = told(living, "\n".join(lines), *asked, *more)
+    assert found[: len(asked)] == [1.0] * len(asked)
+    assert found[len(asked) :] == [value for values in numbers.values() for value in values]
