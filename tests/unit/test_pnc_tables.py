@@ -274,6 +274,11 @@ def test_standard_compensations_of_both_tables_and_of_a_file(living: Living) -> 
 
 # ---------------------------------------------------------------------- signals, PLC, errors, tool data
 
+GROUP_NAMES = (
+    "CHANNEL_INPUTS", "AXIS_INPUTS", "SPINDLE_INPUTS", "CHANNEL_OUTPUTS", "AXIS_OUTPUTS", "SPINDLE_OUTPUTS",
+    "GLOBAL_INPUTS", "GLOBAL_OUTPUTS", "FAST_INPUTS", "FAST_OUTPUTS",
+)  # fmt: skip
+"""The groups of signals from 0 on."""
 SIGNALS = {
     0: (112, 2), 1: (112, 5), 2: (112, 2), 3: (96, 2), 4: (64, 5), 5: (64, 2), 6: (32, 1), 7: (32, 1), 8: (8, 1),
     9: (6, 1),
@@ -291,7 +296,7 @@ def test_programs_read_each_group_of_signals(living: Living, group: int) -> None
     others += [f"?IC({bits[1]},{group},{first})"] if index != first else []
     for value in (True, False):
         for bit in bits:
-            interface.set_bit(Signals(group), index, bit, value)
+            interface.set_bit(Signals[GROUP_NAMES[group]], index, bit, value)
         found = told(living, "", *asked, *others)
         assert found[:4] == [value, value, value, False]
         assert not any(found[4:])
@@ -387,6 +392,13 @@ def test_timers_counters_and_data_modules_are_read_and_released_ones_written(
         assert stopped(living, statement) == "INVALID PARAMETER", statement
 
 
+CATEGORIES = {
+    1: Category.MINOR_SYSTEM, 2: Category.CONTROL_OR_DRIVE, 3: Category.INTERPOLATOR, 4: Category.HARDWARE,
+    5: Category.PLC, 6: Category.PART_PROGRAM, 8: Category.MSD_ERROR, 9: Category.MSD_WARNING,
+    10: Category.MSD_MESSAGE,
+}  # fmt: skip
+
+
 @pytest.fixture
 def faulty(living: Living) -> Iterator[Living]:
     """Return it with an error of each category in channel 1, two in channel 2 and one of all channels."""
@@ -394,7 +406,7 @@ def faulty(living: Living) -> Iterator[Living]:
     before = list(errors.errors)
     errors.errors[:] = []
     for category in (6, 1, 2, 3, 4, 5, 8, 9, 10):
-        errors.add(2000 + category, 1, Category(category))
+        errors.add(2000 + category, 1, CATEGORIES[category])
     errors.add(2101, 2, Category.PART_PROGRAM)
     errors.add(2102, 2, Category.CONTROL_OR_DRIVE)
     errors.add(1938, 2, Category.PART_PROGRAM)
