@@ -154,7 +154,7 @@ class Shown:
             self._channel(shown, number)
         image.spindles[1] = self._spindle(machine)
         image.test_mode = any(
-            run is not None and run.machine_lock for run in map(self._channels.run, image.channels)
+            run is not None and run.switches.machine_lock for run in map(self._channels.run, image.channels)
         )
         return image
 
@@ -210,12 +210,12 @@ class Shown:
 
     def _ends(self, run: ProgramRun) -> list[float]:
         """Return where the executed block ends (machine coordinates)."""
-        to_go = list(run.distance_to_go.values())
-        return [each + left for each, left in zip(run.position.values(), to_go, strict=True)]
+        to_go = list(run.reading.distance_to_go.values())
+        return [each + left for each, left in zip(run.reading.position.values(), to_go, strict=True)]
 
     def _words(self, run: ProgramRun, number: int) -> ModalWords:
         """Return the words of the executed block; before the first one what the program begins with."""
-        return self._data(number).programmed() if run.modal is None else run.modal
+        return self._data(number).programmed() if run.reading.modal is None else run.reading.modal
 
     def _channel(self, shown: Channel, number: int) -> None:
         run = self._channels.run(number)
@@ -231,8 +231,8 @@ class Shown:
             return
         row = run.machine.state.paths.row[run.path]
         words, _ = self._block(run, number)
-        if self._tags.get(number) != run.executed_tag:
-            self._tags[number] = run.executed_tag
+        if self._tags.get(number) != run.reading.tag:
+            self._tags[number] = run.reading.tag
             shown.blocks += 1
         self._state(shown, run, number)
         running = row["state"] == RUNNING
@@ -244,15 +244,15 @@ class Shown:
         segment = run.machine.state.seg.row[int(row["base"]) + int(row["head"]) % int(row["capacity"])]
         shown.dwell = bool(running and segment["kind"] == WAIT)
         moving = bool(running and not shown.dwell)
-        shown.feeds = _feeds(segment, row, run.feed_override) if moving else (0.0, 0.0, 0.0)
+        shown.feeds = _feeds(segment, row, run.overrides.feed) if moving else (0.0, 0.0, 0.0)
         shown.programmed_feed = words.feed * (25.4 if words.inch else 1.0)
-        shown.potentiometer = run.feed_override * _FULL
+        shown.potentiometer = run.overrides.feed * _FULL
         self._tool(shown, words)
         shown.other_waits = (shown.other_waits & Wait.DATA_SERVICE) | _WAITS.get(run.state, Wait(0))
         if self._waits(number):
             shown.other_waits |= Wait.SIGNAL_OR_TIME
-        shown.optional_stop = (run.optional_stop, run.optional_stop)
-        shown.skip = (bool(run.block_delete), bool(run.block_delete))
+        shown.optional_stop = (run.switches.optional_stop, run.switches.optional_stop)
+        shown.skip = (bool(run.switches.block_delete), bool(run.switches.block_delete))
         if shown.sav is Sav.ACTIVE and not running and self._buffer_empty(number):
             shown.sav = Sav.BUFFER_EMPTY
         shown.coordinates = _Coordinates(lambda: self._coordinates(run, number))
@@ -310,7 +310,7 @@ class Shown:
         now = workpiece(run, state.setpoint)
         _, ends = self._block(run, number)
         end_at = workpiece(run, np.array(ends))
-        to_go = list(run.distance_to_go.values())
+        to_go = list(run.reading.distance_to_go.values())
         config = run.machine.config.axes
         found = []
         for each in axes.channels[number]:
@@ -333,7 +333,7 @@ class Shown:
         top = machine.config.spindle.max_rpm
         if run is None:
             return Spindle(limits=(0.0, top), gear_limits=(0.0, top))
-        words = run.modal
+        words = run.reading.modal
         speed = 0.0 if words is None else words.speed
         direction = 0 if words is None else words.spindle_direction
         override, rpm = self._channels.spindle()
