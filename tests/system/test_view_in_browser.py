@@ -28,11 +28,19 @@ class Opened:
     """A view in the browser, and the trace of the same run."""
 
     def __init__(
-        self, chromium: Any, folder: Path, part: str, machine: str, stock: str | None = None, **page: Any
+        self,
+        chromium: Any,
+        folder: Path,
+        part: str,
+        machine: str,
+        stock: str | None = None,
+        *,
+        fails: bool = False,
+        **page: Any,
     ) -> None:
         cut = () if stock is None else ("--stock", stock, "--resolution", "0.5")
-        command("view", EXAMPLES / part, "-m", machine, "-o", folder / "part.html", *cut)
-        result = polycnc.run(EXAMPLES / part, machine, trace=True)
+        command("view", EXAMPLES / part, "-m", machine, "-o", folder / "part.html", *cut, status=int(fails))
+        result = polycnc.run(EXAMPLES / part, machine, trace=True, check=not fails)
         assert result.trace is not None
         self.trace = result.trace
         self.requests: list[str] = []
@@ -294,6 +302,24 @@ def test_the_slider_cuts_back_and_forth(chromium: Any, tmp_path: Path) -> None:
     assert view.page.evaluate(field)[0] == 0
     view.page.locator("#section").select_option("1")
     assert view.page.locator("#cut").is_visible()
+    view.close()
+
+
+def test_an_alarm_is_named_with_its_place_and_the_rest_is_grey(chromium: Any, tmp_path: Path) -> None:
+    """The camera shows what was meant to be cut, in one colour with nothing that turns over time."""
+    program = tmp_path / "stopped.nc"
+    program.write_text("G21 G90 G94\nG0 X3 Y4 Z1\nG1 X13 F900\nG2 X80 I3 J0\nG1 X43\nY24\nM30\n")
+    view = Opened(chromium, tmp_path, str(program), "mill3", fails=True)
+    assert (
+        view.page.locator("#stopped").inner_text().startswith("▲ Stopped at line 4, X13.000 Y4.000 Z1.000: ")
+    )
+    box, count = view.page.evaluate(
+        "() => { const { path, stage } = document.getElementById('stage').seen; return [path.box, path.rest().count]; }"
+    )
+    assert np.array(box[:2]) == pytest.approx(np.array([[0.0, 43.0], [0.0, 24.0]]), abs=4.1)
+    assert count >= 2
+    view.page.locator("#stopped").click()
+    assert view.time_s == pytest.approx(float(view.trace.t_s[-1]), abs=0.002)
     view.close()
 
 

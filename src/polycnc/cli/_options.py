@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, TypedDict
 
 import typer
 
@@ -93,6 +93,22 @@ Stock = Annotated[
         help="Cut stock: auto, box=X0,Y0,Z0,X1,Y1,Z1, cylinder=D,Z0,Z1 (work coordinates, mm) or an STL file.",
         metavar="auto|FORM|FILE",
     ),
+]
+Fixtures = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--fixture",
+        help="What tools must not touch: box=X0,Y0,Z0,X1,Y1,Z1 (as for --stock) or an STL file; may be repeated.",
+        metavar="BOX|FILE",
+    ),
+]
+Target = Annotated[
+    str | None,
+    typer.Option(help="What is to come out: an STL file, as the stock lies.", metavar="FILE"),
+]
+Tolerance = Annotated[
+    float | None,
+    typer.Option(help="How far the part may differ from the target (0.02 mm).", metavar="MM"),
 ]
 Resolution = Annotated[
     float | None,
@@ -232,6 +248,33 @@ PostAsJson = Annotated[
 ShowControl = Annotated[
     bool, typer.Option("--show-control", help="Print the control file, to start one's own from.")
 ]
+
+
+class Body(TypedDict):
+    """What is cut, as settings of a run have it."""
+
+    stock: str | None
+    resolution_mm: float | None
+    fixtures: tuple[str, ...]
+    target: str | None
+    tolerance_mm: float | None
+
+
+def body_of(
+    stock: str | None,
+    resolution: float | None,
+    fixtures: list[str] | None,
+    target: str | None,
+    tolerance: float | None,
+) -> Body:
+    """Return what the options say of stock."""
+    return Body(
+        stock=stock,
+        resolution_mm=resolution,
+        fixtures=tuple(fixtures or ()),
+        target=target,
+        tolerance_mm=tolerance,
+    )
 
 
 def codes_of(texts: list[str] | None) -> tuple[str, ...]:

@@ -141,7 +141,30 @@ def _stock() -> Schema:
                     }
                 )
             ),
-        }
+            "idle_s": _time("Feed that removed nothing"),
+            "idle": _list(
+                _object(
+                    {
+                        "text": _TEXT,
+                        "program": _TEXT,
+                        "line": _LINE,
+                        "time_s": _time("When it began"),
+                        "duration_s": _time("For how long a block fed through air"),
+                        "place_mm": place,
+                    }
+                )
+            ),
+            "target": _object(
+                {
+                    "tolerance_mm": _length("How far the part may differ"),
+                    "gouge_mm3": volume,
+                    "rest_mm3": volume,
+                    "rest_mm": _length("The highest of what is left"),
+                    "rest_place_mm": _list({"type": "number"}, maxItems=3, description="Where that is."),
+                }
+            ),
+        },
+        ("target",),
     )
 
 

@@ -58,8 +58,12 @@ def page(
     beside: Beside | None = None,
     *,
     inch: bool | None = None,
+    rest: Track | None = None,
 ) -> str:
-    """Return the HTML of a view; `axes` are names and units, with `inch` lengths are shown so, else as programmed."""
+    """Return the HTML of a view; `axes` are names and units, with `inch` lengths are shown so, else as programmed.
+
+    `rest` is what could be read after an alarm.
+    """
     machine = result.config
     if machine is not None and [axis.name for axis in machine.axes] != [name for name, _ in axes]:
         machine = None
@@ -67,6 +71,9 @@ def page(
         track = with_part_frame(track, machine)
     listing = Listing(result, track, texts)
     columns = _columns(track, listing, axes, machine, beside)
+    if rest is not None:
+        columns["rest_tip"] = _single(places(rest, axes, machine if "tip" in columns else None))
+        columns["rest_rapid"] = rest.rapid.astype(np.uint8)
     zero, programmed_inch = zero_of_work(track, axes, machine)
     about = _about(result, axes, track, listing, beside)
     about |= {

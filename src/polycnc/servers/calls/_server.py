@@ -13,7 +13,7 @@ from polycnc.servers.calls._caller import Caller
 from polycnc.servers.calls._client import CallClient
 from polycnc.servers.calls._libraries import LIBRARIES
 from polycnc.servers.calls._trace import Trace
-from polycnc.servers.machines import AS_USUAL, LOOPBACK, Log, ServedMachine, Treatment
+from polycnc.servers.machines import AS_USUAL, LOOPBACK, Log, ServedMachine, Treatment, notice_loss, peers_of
 
 _MOST_CLIENTS = 256
 _HELLO_S = 10.0
@@ -47,6 +47,11 @@ class CallsServer:
     def said(self) -> str:
         """Where it listens."""
         return f"{self.address}:{self.port}"
+
+    @property
+    def clients(self) -> list[str]:
+        """The addresses of the clients that are connected now."""
+        return peers_of(line.transport for line in self.lines)
 
     async def start(self) -> None:
         """Listen.
@@ -106,7 +111,7 @@ class _Line(asyncio.BufferedProtocol):
     It reads into a buffer of its own: asyncio's has 256 kB for each read, which costs more than a whole call.
     """
 
-    _transport: asyncio.Transport
+    transport: asyncio.Transport
 
     def __init__(self, server: CallsServer) -> None:
         self._server = server
@@ -134,7 +139,8 @@ class _Line(asyncio.BufferedProtocol):
 
     def connection_made(self, transport: asyncio.BaseTransport) -> None:
         assert isinstance(transport, asyncio.Transport)
-        self._transport = transport
+        self.transport = transport
+        notice_loss(transport)
         if len(self._server.lines) >= _MOST_CLIENTS:
             self._server.tell(f"more than {_MOST_CLIENTS} clients")
             transport.abort()
@@ -174,19 +180,19 @@ class _Line(asyncio.BufferedProtocol):
 
     def _send_now(self, sent: bytes) -> None:
         if sent:
-            self._transport.write(sent)
+            self.transport.write(sent)
         if self._machines and self._limit is not None:
             self._limit.cancel()
             self._limit = None
         if self._client.ended:
-            self._transport.close()
+            self.transport.close()
 
     def pause_writing(self) -> None:
-        self._transport.pause_reading()
+        self.transport.pause_reading()
 
     def resume_writing(self) -> None:
         if self._later is None:
-            self._transport.resume_reading()
+            self.transport.resume_reading()
 
     def connection_lost(self, error: Exception | None) -> None:
         self._server.lines.discard(self)
@@ -202,4 +208,4 @@ class _Line(asyncio.BufferedProtocol):
 
     def abort(self) -> None:
         """End the connection at once."""
-        self._transport.abort()
+        self.transport.abort()

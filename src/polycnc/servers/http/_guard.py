@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import hmac
 import ipaddress
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from http.cookies import CookieError, SimpleCookie
 from urllib.parse import urlsplit
 
@@ -25,10 +25,21 @@ _CONTENT = (
 
 
 class Guard:
-    """Let only those requests through that may be answered; `hosts` are names besides those of loopback."""
+    """Let only those requests through that may be answered; `hosts` are names besides those of loopback.
 
-    def __init__(self, app: ASGIApp, *, hosts: Iterable[str] = (), token: str | None = None) -> None:
+    `answered` is told the status of every answer.
+    """
+
+    def __init__(
+        self,
+        app: ASGIApp,
+        *,
+        hosts: Iterable[str] = (),
+        token: str | None = None,
+        answered: Callable[[int], object] = lambda status: None,
+    ) -> None:
         self._app = app
+        self._answered = answered
         self._hosts = frozenset(hosts) | {"localhost"}
         self._any_address = token is not None
         self._token = token
@@ -44,9 +55,19 @@ class Guard:
                 await receive()
                 await send({"type": "websocket.close", "code": 1008, "reason": refusal[1]})
             else:
+                self._answered(refusal[0])
                 await problem(*refusal)(scope, receive, send)
             return
-        await self._app(scope, _bounded(receive), _with_headers(send))
+        await self._app(scope, _bounded(receive), self._with_headers(send))
+
+    def _with_headers(self, send: Send) -> Send:
+        async def sent(message: Message) -> None:
+            if message["type"] == "http.response.start":
+                self._answered(message["status"])
+                message["headers"] = [*message.get("headers", ()), *_CONTENT]
+            await send(message)
+
+        return sent
 
     def _refusal(self, scope: Scope) -> tuple[int, str, str] | None:
         headers = scope["headers"]
@@ -122,12 +143,3 @@ def _bounded(receive: Receive) -> Receive:
 
 class TooLargeError(Exception):
     """A body without a length that grows too large."""
-
-
-def _with_headers(send: Send) -> Send:
-    async def sent(message: Message) -> None:
-        if message["type"] == "http.response.start":
-            message["headers"] = [*message.get("headers", ()), *_CONTENT]
-        await send(message)
-
-    return sent
