@@ -99,7 +99,7 @@ Resolution = Annotated[
     typer.Option(help="Width of a cell of the stock (mm; default: by its size).", metavar="MM"),
 ]
 SaveStock = Annotated[
-    Path | None, typer.Option(help="Write what is left of the stock to an .stl file.", metavar="FILE")
+    Path | None, typer.Option(help="Write what is left of the stock to an .stl or .3mf file.", metavar="FILE")
 ]
 SaveParameters = Annotated[
     Path | None,

@@ -4,6 +4,7 @@ from polycnc.stock._course import Course
 from polycnc.stock._cutting import Contact, ContactKind, Cutting, Rows
 from polycnc.stock._form import Form, NoStockError, around
 from polycnc.stock._mesh import Mesh
+from polycnc.stock._mesh_files import MESH_FORMATS
 from polycnc.stock._profile import Arc, Line, Profile, make_profile
 from polycnc.stock._solid import read_stl
 from polycnc.stock._stock import Box, Stock
@@ -11,6 +12,7 @@ from polycnc.stock._tool import Tool, ToolKind
 from polycnc.stock._tool_text import tool_number, tool_of_remark
 
 __all__ = [
+    "MESH_FORMATS",
     "Arc",
     "Box",
     "Contact",
