@@ -465,7 +465,9 @@ def test_what_the_manual_leaves_unused_is_zero_whatever_the_control_does() -> No
     control.parameters.set(8003, 1 << 7)
     control.clock.set_now(AT)
     sig = fwlib.IODBSIG(type=1)
-    sig.data[0] = (1, 44, 2, 0xFF)
+    first = sig.data[0]
+    for field, value in zip(("ent_no", "sig_no", "sig_name", "mask_pat"), (1, 44, 2, 0xFF), strict=True):
+        setattr(first, field, value)
     assert fwlib.cnc_wrhissgnl(handle, sig) == OK
     assert fwlib.cnc_clearophis(handle, 0) == fwlib.cnc_clearophis(handle, 1) == OK
     for number in (502, 503, 504):

@@ -22,8 +22,8 @@ from polycnc.stock._voxels import Voxels
 from polycnc.stock._ways import Tally
 
 __all__ = [
-    "TOLERANCE_MM",
     "MESH_FORMATS",
+    "TOLERANCE_MM",
     "Arc",
     "Box",
     "Contact",
