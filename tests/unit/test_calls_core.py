@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ctypes
 import json
 import random
 import struct
@@ -16,7 +17,7 @@ from hypothesis import strategies as st
 
 from polycnc.controllers.fanuc import PowerMate, fwlib
 from polycnc.controllers.fanuc.clib import FWLIB
-from polycnc.controllers.library.clib import Call, Slot, Way
+from polycnc.controllers.library.clib import Call, Slot, Way, alike, length_in
 from polycnc.errors import UsageError
 from polycnc.servers.calls import LIBRARIES, CallClient, Caller, Trace, replay
 
@@ -50,8 +51,10 @@ class Rig:
     def another(self, **more: object) -> CallClient:
         return CallClient(self.find, self.told.append, **more)  # type: ignore[arg-type]
 
-    def find(self, name: str) -> Caller | None:
-        return LIBRARIES["fanuc"].make(FWLIB, [self.device]) if name == "fwlib32" else None
+    def find(self, name: str, packing: int) -> Caller | None:
+        if name != "fwlib32":
+            return None
+        return LIBRARIES["fanuc"].make(FWLIB.packed(packing) or FWLIB, [self.device], None)
 
 
 def answers(sent: bytes) -> list[tuple[int, int, bytes]]:
@@ -103,7 +106,8 @@ def test_a_doubled_frame_is_a_second_call() -> None:
     ("said", "answer", "told"),
     [
         (hello(table=bytes(16)), fwlib.EW_VERSION, "fwlib32 7.5 has another table of functions"),
-        (hello(packing=4), fwlib.EW_VERSION, "fwlib32 packs structures to 4 bytes"),
+        (hello(packing=2), fwlib.EW_VERSION, "fwlib32 packs structures to 2 bytes"),
+        (hello(packing=4), fwlib.EW_VERSION, "fwlib32 7.5 has another table of functions"),
         (hello(name=b"mcug7"), None, "no machine here has the library mcug7"),
         (hello(pointer=2), None, "a client that does not say hello"),
         (b"GET / HTTP/1.1\r\n", None, "a client that does not say hello"),
@@ -151,6 +155,99 @@ def test_room_is_never_exceeded_and_a_refused_call_writes_nothing() -> None:
     assert answers(rig.client.receive(refused)) == [(513, fwlib.EW_LENGTH, struct.pack("<I", 0))]
     null = frame("cnc_rdmacro", struct.pack("<HhhI", 1, 103, 10, 0xFFFFFFFF))
     assert answers(rig.client.receive(null)) == [(513, fwlib.EW_DATA, struct.pack("<I", 0))]
+
+
+PACKED = FWLIB.packed(4)
+
+
+def _packed_rig() -> Rig:
+    assert PACKED is not None
+    rig = Rig()
+    rig.client.receive(hello(table=PACKED.table_hash, packing=4) + OPEN)
+    assert not rig.client.ended
+    return rig
+
+
+def test_structures_of_4_bytes_lie_as_later_headers_have_them() -> None:
+    rig = _packed_rig()
+    for number, value in ((500, 31415), (501, -27182)):
+        rig.client.receive(frame("cnc_wrmacro", struct.pack("<HhhiH", 1, number, 10, value, number % 7)))
+    read = struct.pack("<HhhhI", 1, 500, 501, 8 + 8 * 2, 8 + 8 * 2)
+    expected = struct.pack("<hhhxxihxxihxx", 500, 0, 501, 31415, 500 % 7, -27182, 501 % 7)
+    ((_, code, outputs),) = answers(rig.client.receive(frame("cnc_rdmacror", read)))
+    assert (code, outputs) == (0, struct.pack("<I", 24) + expected)
+    short = struct.pack("<HhhhI", 1, 500, 501, 8 + 8 * 2 - 3, 24)
+    ((_, code, outputs),) = answers(rig.client.receive(frame("cnc_rdmacror", short)))
+    assert (code, outputs) == (fwlib.EW_LENGTH, struct.pack("<I", 0))
+
+
+def test_a_range_of_4_bytes_is_written_whole_or_not_at_all() -> None:
+    rig = _packed_rig()
+    content = struct.pack("<hhhxxihxxihxx", 500, 0, 501, 1234, 1, -5678, 2)
+
+    def write(length: int) -> int:
+        there = content[: max(0, length)]
+        packed = struct.pack("<HhI", 1, length, len(there)) + there
+        return answers(rig.client.receive(frame("cnc_wrmacror", packed)))[0][1]
+
+    def read() -> list[tuple[int, int]]:
+        found = []
+        for number in (500, 501):
+            asked = frame("cnc_rdmacro", struct.pack("<HhhI", 1, number, 12, 12))
+            outputs = answers(rig.client.receive(asked))[0][2]
+            found.append(struct.unpack_from("<ih", outputs, 8))
+        return found
+
+    before = read()
+    assert [write(length) for length in (21, 16, 15, 8, 0, -1)] == [fwlib.EW_LENGTH] * 6
+    assert read() == before
+    assert write(24) == 0
+    assert read() == [(1234, 1), (-5678, 2)]
+
+
+def test_modal_data_and_dynamic_data_of_4_bytes_are_those_of_the_manual() -> None:
+    rig = _packed_rig()
+    twin = rig.another()
+    twin.receive(hello() + OPEN)
+    for kind, form, packed in (
+        (-1, "35s", "35s"),
+        (-2, "ibb" * 27, "ibbxx" * 27),
+        (-3, "ibb" * 6, "ibbxx" * 6),
+    ):
+        asked = [frame("cnc_modal", struct.pack("<HhhI", 1, kind, 0, size)) for size in (220, 166)]
+        one, two = (
+            answers(each.receive(said))[0] for each, said in zip((rig.client, twin), asked, strict=True)
+        )
+        assert one[1] == two[1] == 0
+        assert struct.unpack_from("<hh" + packed, one[2], 4) == struct.unpack_from("<hh" + form, two[2], 4)
+    dynamic = [struct.pack("<HhhI", 1, -1, size, size) for size in (120, 118)]
+    one = answers(rig.client.receive(frame("cnc_rddynamic", dynamic[0])))[0]
+    two = answers(twin.receive(frame("cnc_rddynamic", dynamic[1])))[0]
+    assert one[1] == two[1] == 0
+    assert struct.unpack_from("<5hxx27i", one[2], 4) == struct.unpack_from("<5h27i", two[2], 4)
+
+
+def test_what_is_written_several_times_lies_alike_in_both_packings() -> None:
+    assert PACKED is not None
+    for call, other in zip(FWLIB.calls, PACKED.calls, strict=True):
+        for slot, packed in zip(call.slots, other.slots, strict=True):
+            several = slot.way is Way.RECORDS or (slot.way is Way.MEMORY and slot.writes)
+            if several and hasattr(slot.element, "_table_"):
+                assert alike(packed.element, slot.element), f"{call.function.name}: {slot.argument.name}"
+
+
+@settings(max_examples=200)
+@given(st.sampled_from(sorted(FWLIB.classes)), st.integers(0, 500))
+def test_a_length_in_another_packing_grows_with_it_and_is_whole_where_the_structure_is(
+    name: str, length: int
+) -> None:
+    assert PACKED is not None
+    packed, cls = PACKED.classes[name], FWLIB.classes[name]
+    assert 0 <= length_in(packed, cls, length) <= length_in(packed, cls, length + 1)
+    whole = ctypes.sizeof(packed)
+    assert length_in(packed, cls, whole) == ctypes.sizeof(cls)
+    assert length_in(packed, cls, whole + length) == ctypes.sizeof(cls) + length
+    assert length_in(packed, cls, min(length, whole)) <= min(length, ctypes.sizeof(cls))
 
 
 def _garbage(seed: int, rounds: int) -> None:
@@ -260,7 +357,7 @@ def test_calls_are_traced(tmp_path: Path) -> None:
 
 def _replayed(path: Path) -> list[tuple[str, bool]]:
     device = PowerMate(3)
-    found = replay(path, device, lambda: LIBRARIES["fanuc"].make(FWLIB, [device]))
+    found = replay(path, device, lambda: LIBRARIES["fanuc"].make(FWLIB, [device], None))
     return [(each.call, each.is_equal) for each in found]
 
 
@@ -326,7 +423,7 @@ def test_a_line_that_is_none_of_a_trace_is_refused_with_its_place(
     path = tmp_path / "calls.jsonl"
     path.write_text(f"{GOOD}\n\n{line}\n")
     with pytest.raises(UsageError, match=f":3: .*{told}|:3: {told}"):
-        list(replay(path, shared().device, lambda: LIBRARIES["fanuc"].make(FWLIB, [shared().device])))
+        list(replay(path, shared().device, lambda: LIBRARIES["fanuc"].make(FWLIB, [shared().device], None)))
 
 
 def test_a_trace_that_cannot_be_read_is_refused(tmp_path: Path) -> None:

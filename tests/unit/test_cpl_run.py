@@ -104,7 +104,7 @@ def test_wait_stands_for_its_duration() -> None:
     assert found["#C%"] - found["#B%"] in range(170, 271)
 
 
-@pytest.mark.covers("cpl.WAIT.result.0", "cpl.WAIT.result.2")
+@pytest.mark.covers("cpl.WAIT.result.0", "cpl.WAIT.result.2", "cpl.WAIT")
 def test_wait_tells_whether_its_condition_held_at_once() -> None:
     started = Started("N10 G1 X20 F6000\n20 WAIT(IC(7)=TRUE,,#E%)\nN30 X30").to_the_end()
     assert started.language.globals["#E%"] == 0

@@ -372,7 +372,7 @@ def test_jumps_lead_out_of_one_two_and_three_loops(fourth: str) -> None:
 @pytest.mark.parametrize(
     ("text", "line", "rounds"),
     [
-        ("#2=5\nN5 #100=#100+1\nGOTO#2\n", 3, 21 * 51),
+        ("#2=5\nN5 #100=#100+1\nGOTO#2\n", 3, 21 * 6),  # a number that is looked for counts ten
         ("G0 X2\nN5 #100=#100+1\nGOTO5\n", 3, 21 * 51),
         ("#1=3\n#100=#100+1\nM99\n", 3, 21 * 51),
         ("#1=3\nDO2\n#100=#100+1\nEND2\n", 2, 21 * 51),

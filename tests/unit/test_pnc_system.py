@@ -387,7 +387,7 @@ def test_drives_tell_their_parameters(cell: Cell) -> None:
     assert cell.error('1 A=SCS(1,"S",999)') == "1: INVALID PARAMETER"
 
 
-@pytest.mark.covers("cpl.SCSL", "cpl.SCSL.result.0", "cpl.SCSL.result.2", "cpl.SCS.idtype.P")
+@pytest.mark.covers("cpl.SCSL", "cpl.SCSL.result.0", "cpl.SCSL.result.2", "cpl.SCS.idtype.P", "cpl.SCS")
 def test_lists_of_drives_go_into_a_file(cell: Cell) -> None:
     assert cell.values('10 SCSL(1,"S",187,"LIST",E%)', "E%") == [0]
     assert (cell.folder / "LIST").read_bytes() == b"40\n51\n\x03\n"

@@ -409,7 +409,7 @@ def faulty(living: Living) -> Iterator[Living]:
 @pytest.mark.parametrize(
     "category", covered("GETERR.cat.", (1, 2, 3, 4, 5, 6, 8, 9, 10), "GETERR", "GETERR.ret.n")
 )
-@pytest.mark.covers("cpl.GETERR.elem.1", "cpl.GETERR.elem.2", "cpl.GETERR.elem.3")
+@pytest.mark.covers("cpl.GETERR.elem.1", "cpl.GETERR.elem.2", "cpl.GETERR.elem.3", "cpl.GETERR")
 def test_programs_read_the_errors_of_each_category(faulty: Living, category: int) -> None:
     found = told(
         faulty, f"1 DIM F%(4,3)\n2 G%=GETERR(1,{category},F%,3)", *("G%", "F%(1,1)", "F%(1,2)", "F%(1,3)"),
@@ -634,3 +634,78 @@ def test_the_drilling_axis_the_first_spindle_and_none_are_told_apart(turned: Liv
     turned.pnc.control.set_overrides(feed=1.0, channel=0)
     turned.pnc.control.set_overrides(spindle=1.0)
     assert dict(zip(asked, found, strict=True)) == asked
+
+
+@pytest.mark.covers(
+    "cpl.WAIT", "cpl.WAIT.result.0", "cpl.WAIT.result.1", "cpl.WAIT.result.2", "cpl.CLOCK", "cpl.IC"
+)
+@pytest.mark.covers("cpl.WAIT.nc", "cpl.IC.group.6")
+def test_a_wait_tells_whether_it_ended_by_its_signal_or_its_time(living: Living) -> None:
+    signal = living.pnc.system.interface
+    signal.set_bit(Signals(6), 1, 3, False)
+    living.write(
+        "main1",
+        "10 S%=CLOCK\n20 WAIT(IC(3,6,1),900,E%)\n30 #A%=E% : #B%=CLOCK-S%\n40 WAIT(,250,E%)\n"
+        "50 #C%=E% : #D%=CLOCK-S%-#B%\n60 WAIT(NOT IC(3,6,1),70,E%)\n70 #E%=E% : #F%=CLOCK-S%-#B%-#D%\n"
+        "80 WAIT(IC(3,6,1)=TRUE,70,E%)\n90 #G%=E%\n"
+        "100 #H%=CLOCK-S%-#B%-#D%-#F%\nN110 G1 X3 F6000\nN120 WAIT\n130 #I!=MPOS(1)\n"
+        "140 WAIT(IC(3,6,1)=FALSE)\n150 #J%=CLOCK-S%",
+    )  # fmt: skip
+    living.pnc.select_program("main1")
+    living.pnc.cycle_start()
+    living.pnc.advance(123)
+    signal.set_bit(Signals(6), 1, 3, True)
+    living.pnc.advance(900)
+    assert living.pnc.variables()["#J%"] is None
+    signal.set_bit(Signals(6), 1, 3, False)
+    living.until_over()
+    found = living.pnc.variables()
+    assert [found[f"#{name}%"] for name in "ACEG"] == [2, 1, 1, 0]
+    assert [found[f"#{name}%"] for name in "BDFH"] == pytest.approx([123, 250, 70, 0], abs=4)
+    assert found["#I!"] == 3
+    assert int(str(found["#J%"])) == pytest.approx(1023, abs=4)
+
+
+WORDS = (
+    "G139",
+    "G138 R9",
+    "G169",
+    "G168 X1",
+    "G269",
+    "G268 X1",
+    "G148",
+    "G147",
+    "G247",
+    "G847",
+    "G647",
+    "M9",
+    "M7",
+    "M8",
+)
+UNTOUCHED = {17: 53, 18: 153, 19: 253, 20: 67, 21: 39, 28: 146, 30: 167, 3: 71, 4: 90, 7: 94, 8: 40}
+
+
+@pytest.mark.covers("cpl.NCF", "cpl.ex.2108", "cpl.SD.1.i.1", "cpl.SD.1.i.2", "cpl.SD")
+@pytest.mark.covers(*(f"cpl.SD.group.{group}" for group in UNTOUCHED))
+def test_what_was_programmed_last_of_each_group_is_told_by_any_of_it(living: Living) -> None:
+    asked = [f"SD(1,{group},{index})" for group in UNTOUCHED for index in (1, 2)]
+    assert told(living, "N1 G1 X3 F9000\n2 WAIT", *asked) == [
+        code for code in UNTOUCHED.values() for _ in (1, 2)
+    ]
+    groups = {
+        "G13": ("G138", "G139"),
+        "G16": ("G168", "G169"),
+        "G26": ("G268", "G269"),
+        "M": ("M7", "M8", "M9"),
+    }
+    lines, checks = ["1 DIM A$(5)", "N2 G18"], list[str]()
+    for place, word in enumerate(WORDS):
+        name = word.split()[0]
+        others = next(
+            (each for begin, each in groups.items() if name.startswith(begin)), ("G147", "G148", "G747")
+        )
+        lines.append(f"N3 {word}")
+        for number, other in enumerate(others):
+            lines.append(f'4 A$=NCF("{other}") : C{place}N{number}?=A$="{name}"')
+            checks.append(f"?C{place}N{number}?")
+    assert told(living, "\n".join([*lines, "N5 M5"]), *checks) == [1.0] * len(checks)

@@ -71,7 +71,7 @@ def _replay(kind: str, machine: Path | None, axes: int, trace: Path) -> None:
     library = served.load()
     count = other = 0
     try:
-        for each in replay(trace, made.device, lambda: served.make(library, [made.device])):
+        for each in replay(trace, made.device, lambda: served.make(library, [made.device], None)):
             count += 1
             if not each.is_equal:
                 other += 1

@@ -33,6 +33,13 @@ G1 Z-2 F600
 X20 Y3
 M30
 """
+_SHAFT = """(T1 CNMG120408)
+T1 M6
+S500 M4
+G18 G90 G0 X8 Z2
+G1 Z-7 F300
+M30
+"""
 
 
 def _warm_run(progress: Progress) -> None:
@@ -88,8 +95,11 @@ def _warm_stock(progress: Progress) -> None:
         done = runner.run(_PLATE, dialect="fanuc", check=False, stock="auto", resolution_mm=1.0)
         if done.stock is not None:
             done.stock.mesh().write_stl(part)
-        progress("a body from a file", 0.8)
-        runner.run(_PLATE, dialect="fanuc", check=False, stock=str(part), resolution_mm=1.0)
+        progress("a body from a file", 0.6)
+        body = str(part)
+        runner.run(_PLATE, dialect="fanuc", check=False, stock=body, resolution_mm=1.0, target=body)
+    progress("a shaft", 0.8)
+    runner.run(_SHAFT, "lathe2", "din", check=False, stock="cylinder=20,-9,0", resolution_mm=1.0)
 
 
 _JOBS = {"run": _warm_run, "stock": _warm_stock, "post": _warm_post, "apci": _warm_apci, "imc": _warm_imc}

@@ -47,4 +47,16 @@ class ToolConfig(StrictModel):
     holder: tuple[tuple[Size, Size], ...] = Field(
         default=(), description="What holds it, in the same way: `[[45, 20], [70, 32]]`."
     )
+    insert: str = Field(
+        default="", max_length=40, description="The insert of a turning tool by ISO 1832, like `CNMG120408`."
+    )
+    approach_deg: Annotated[float, Field(gt=0, lt=180)] = Field(
+        default=95.0, description="Angle of the main edge of an insert to the axis."
+    )
+    width_mm: NotNegative = Field(
+        default=0.0, description="Width of a grooving tool, whose tip is its corner towards -Z."
+    )
+    thread_deg: Annotated[float, Field(ge=0, lt=180)] = Field(
+        default=0.0, description="Angle between the flanks of a threading tool."
+    )
     left_hand: bool = Field(default=False, description="It cuts with M4.")

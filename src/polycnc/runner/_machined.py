@@ -11,7 +11,7 @@ import numpy.typing as npt
 
 from polycnc.errors import SourcePosition
 from polycnc.runner._blocks import Blocks
-from polycnc.stock import ContactKind, Form, Rows, Stock, TargetComparison, Tool
+from polycnc.stock import ContactKind, Form, Insert, Rows, Stock, TargetComparison, Tool, Turned
 
 Floats = npt.NDArray[np.float64]
 
@@ -60,7 +60,7 @@ class Machined:
     on their `course`, from `zero_mm` in machine coordinates.
     """
 
-    stock: Stock
+    stock: Stock | Turned
     blocks: Blocks
     removed_mm3: Floats
     by_tool_mm3: Mapping[int, float]
@@ -71,13 +71,18 @@ class Machined:
     messages: list[str]
     form: Form
     course: Rows
-    tools: Mapping[int, Tool]
+    tools: Mapping[int, Tool | Insert]
     zero_mm: tuple[float, float, float]
 
     @property
     def volume_mm3(self) -> float:
         """What all blocks have removed."""
         return float(self.removed_mm3.sum())
+
+    @property
+    def rotating(self) -> dict[int, Tool]:
+        """The tools that rotate: no inserts."""
+        return {number: tool for number, tool in self.tools.items() if isinstance(tool, Tool)}
 
     def as_dict(self) -> dict[str, Any]:
         """Return sizes, volumes and collisions as plain data for JSON; lines are those of the programs."""

@@ -15,27 +15,43 @@ from polycnc.nc import CONTEXT_SHIFT, BlockRecords
 from polycnc.runner._blocks import BlockTable, ExecutedBlock
 from polycnc.runner._machined import Collision, IdleFeed, Machined
 from polycnc.runner._stock_tools import tools_of
-from polycnc.stock import Course, Cutting, Form, NoStockError, Rows, Tool, fixtures_of
+from polycnc.runner._turning_tools import turning_tools_of
+from polycnc.stock import (
+    Course,
+    Cutting,
+    Form,
+    Insert,
+    NoStockError,
+    Rows,
+    Stock,
+    Tally,
+    Tool,
+    Turned,
+    TurningCutting,
+    fixtures_of,
+)
 
 Floats = npt.NDArray[np.float64]
-_PLACES = ("X", "Y", "Z")
 
 
 class MachiningCollector:
     """Collect the course of the tool's tip over a run, in the coordinates of the work offset of the first cut.
 
-    A tool hangs from the spindle by its length in the machine file, whatever compensation does.
+    A tool hangs from the spindle, or from the turret, by its sizes in the machine file, whatever compensation does. A
+    machine without Y is a lathe: its X is the distance from the axis, and Y of the course is 0.
 
     Raises:
-        UsageError: a machine without X, Y and Z.
+        UsageError: a machine without X and Z.
     """
 
     def __init__(self, config: MachineConfig) -> None:
-        missing = [name for name in _PLACES if name not in config.axis_names]
+        self._lathe = "Y" not in config.axis_names
+        self._names = ("X", "Z") if self._lathe else ("X", "Y", "Z")
+        missing = [name for name in self._names if name not in config.axis_names]
         if missing:
             raise UsageError(
                 f"machine '{config.name}' has no axis {missing[0]}: its stock cannot be cut",
-                hint="Stock is cut on machines with X, Y and Z.",
+                hint="Stock is cut on machines with X, Y and Z, and on lathes with X and Z.",
             )
         self._config = config
         self._turning = [
@@ -44,7 +60,7 @@ class MachiningCollector:
             if isinstance(axis, RotaryAxis) and axis.carries != "nothing"
         ]
         self._turned = ""
-        self._axes = [config.axis_names.index(name) for name in _PLACES]
+        self._axes = [config.axis_names.index(name) for name in self._names]
         self._table = BlockTable()
         self._course = Course()
         self._zero: list[float] | None = None
@@ -63,7 +79,7 @@ class MachiningCollector:
         found = [self._context(int(tag), records) for tag in tags[begins].tolist()]
         shift, tool = (np.repeat(np.array(column), lengths, axis=0) for column in zip(*found, strict=True))
         pieces = np.split(tags, begins[1:])
-        turns = np.concatenate([records.spindle_directions(piece) for piece in pieces])
+        turns = np.concatenate([records.spindle_turns(piece) for piece in pieces])
         starts = np.flatnonzero(np.diff(tags, prepend=~tags[:1]))
         block = np.repeat(self._table.numbers(tags[starts], records), np.diff(starts, append=len(tags)))
         place = rows[:, LEADING : LEADING + len(self._config.axes)][:, self._axes]
@@ -74,6 +90,8 @@ class MachiningCollector:
             if words is not None:
                 offsets = [self._config.work_offset(name) for name in words.work]
                 self._zero = [sum(offset[axis] for offset in offsets) for axis in self._axes]
+        if self._lathe:
+            place = np.insert(place, 1, 0.0, axis=1)
         tip = place - shift
         self._course.add(Rows(rows[:, TIME_S].copy(), tip, block, tool, rapid, turns))
 
@@ -83,13 +101,16 @@ class MachiningCollector:
         if words is None:
             return [0.0, 0.0, 0.0], 0
         tool = self._config.tools.get(words.tool, ToolConfig())
-        return [0.0, 0.0, tool.length_mm + tool.wear_length_mm], words.tool
+        length = tool.length_mm + tool.wear_length_mm
+        if self._lathe:
+            return [tool.x_mm + tool.wear_x_mm, 0.0, length + tool.z_mm + tool.wear_z_mm], words.tool
+        return [0.0, 0.0, length], words.tool
 
     def _place(self, block: ExecutedBlock) -> SourcePosition | None:
         text = self.texts.get(block.program)
         return None if text is None or not block.line else text.line_position(block.line)
 
-    def machined(self, form: Form, tools: Mapping[int, Tool] | None = None) -> Machined:
+    def machined(self, form: Form, tools: Mapping[int, Tool | Insert] | None = None) -> Machined:
         """Cut the body that a form tells, with the tools that machine and programs describe if none are given.
 
         Raises:
@@ -100,47 +121,66 @@ class MachiningCollector:
                 f"axis {self._turned} turns the part or the tool: stock is cut on three axes only",
                 hint="Run the program without stock.",
             )
-        if tools is None:
-            tools = tools_of(self._config, self.texts)
-        course = self._course.rows()
-        x, y, z = self._zero or [0.0, 0.0, 0.0]
+        course, (x, y, z) = self._course.rows(), self._zero_mm()
         course = replace(course, tip=course.tip - (x, y, z))
-        stock = form.body(course, tools)
+        if self._lathe:
+            given = turning_tools_of(self._config, self.texts) if tools is None else tools
+            turned = TurningCutting(form.turned_body(course), given)
+            turned.add(course)
+            return self._what_was_cut(turned.stock, turned.tally, form, course, given)
+        given = tools_of(self._config, self.texts) if tools is None else tools
+        mills = {number: tool for number, tool in given.items() if isinstance(tool, Tool)}
+        stock = form.body(course, mills)
         target = form.target_of(stock)
-        cutting = Cutting(stock, tools, fixtures_of(form.fixtures, stock.cell_mm), target)
+        cutting = Cutting(stock, mills, fixtures_of(form.fixtures, stock.cell_mm), target)
         cutting.add(course)
+        found = self._what_was_cut(stock, cutting.tally, form, course, given)
+        return found if target is None else replace(found, comparison=target.compare(stock))
+
+    def _zero_mm(self) -> tuple[float, float, float]:
+        first, *others = self._zero or [0.0] * len(self._names)
+        return (first, 0.0, others[0]) if self._lathe else (first, others[0], others[1])
+
+    def _what_was_cut(
+        self,
+        stock: Stock | Turned,
+        tally: Tally,
+        form: Form,
+        course: Rows,
+        tools: Mapping[int, Tool | Insert],
+    ) -> Machined:
         blocks = self._table.blocks()
         removed = np.zeros(len(blocks))
-        known = cutting.by_block_mm3[: len(blocks)]
+        known = tally.by_block_mm3[: len(blocks)]
         removed[: len(known)] = known
         return Machined(
             stock=stock,
             blocks=blocks,
             removed_mm3=removed,
-            by_tool_mm3=cutting.by_tool_mm3,
+            by_tool_mm3=dict(tally.by_tool_mm3),
             collisions=[
                 Collision(
                     each.kind, at.program, at.line, self._place(at), each.t_s, each.place, each.depth_mm
                 )
-                for each in cutting.contacts
+                for each in tally.contacts.all()
                 for at in [blocks[each.block]]
             ],
             idle=[
                 IdleFeed(at.program, at.line, self._place(at), each.t_s, each.duration_s, each.place)
-                for each in cutting.idle
+                for each in tally.idle
                 for at in [blocks[each.block]]
             ],
-            idle_s=cutting.idle_s,
-            comparison=None if target is None else target.compare(stock),
+            idle_s=tally.idle_s,
+            comparison=None,
             messages=[
-                f"stock: {stock.box}, {stock.cell_mm:g} mm a cell",
+                f"stock: {stock}, {stock.cell_mm:g} mm a cell",
                 *(
                     f"the shape of tool {number} is not known: it cuts nothing here"
-                    for number in sorted(cutting.unknown_tools)
+                    for number in sorted(tally.unknown_tools)
                 ),
             ],
             form=form,
             course=course,
             tools=tools,
-            zero_mm=(x, y, z),
+            zero_mm=self._zero_mm(),
         )

@@ -33,7 +33,7 @@ def tools_of(config: MachineConfig, texts: Mapping[str, ProgramText]) -> dict[in
             tools[number] = Tool(ToolKind.FLAT, 2.0 * each.radius_mm)
     for text in texts.values():
         inch = _INCH.search(text.content) is not None
-        for number, remark in _remarks_of_tools(text):
+        for number, remark in remarks_of_tools(text):
             if (found := tool_of_remark(remark, inch=inch)) is not None:
                 tools[number] = found
     for number, each in config.tools.items():
@@ -68,7 +68,7 @@ def _whole(tool: Tool | None, config: ToolConfig) -> Tool | None:
     )
 
 
-def _remarks_of_tools(text: ProgramText) -> Iterator[tuple[int, str]]:
+def remarks_of_tools(text: ProgramText) -> Iterator[tuple[int, str]]:
     """Yield numbers of tools with remarks: those that name them, and the last one before a T word."""
     last = ""
     for found in _REMARK_OR_TOOL.finditer(text.content):

@@ -5,6 +5,7 @@ from polycnc.stock._course import Course
 from polycnc.stock._cutting import Cutting
 from polycnc.stock._fixtures import check_fixtures, fixtures_of
 from polycnc.stock._form import Form, NoStockError, around
+from polycnc.stock._insert import Insert, InsertKind, grooving_tool, iso_insert, threading_tool
 from polycnc.stock._mesh import Mesh
 from polycnc.stock._profile import Arc, Line, Profile, make_profile
 from polycnc.stock._rows import Rows
@@ -13,6 +14,9 @@ from polycnc.stock._stock import Box, Stock
 from polycnc.stock._target import TOLERANCE_MM, Target, TargetComparison
 from polycnc.stock._tool import Tool, ToolKind
 from polycnc.stock._tool_text import tool_number, tool_of_remark
+from polycnc.stock._turned import Turned
+from polycnc.stock._turning import TurningCutting
+from polycnc.stock._ways import Tally
 
 __all__ = [
     "TOLERANCE_MM",
@@ -24,21 +28,29 @@ __all__ = [
     "Cutting",
     "Form",
     "Idle",
+    "Insert",
+    "InsertKind",
     "Line",
     "Mesh",
     "NoStockError",
     "Profile",
     "Rows",
     "Stock",
+    "Tally",
     "Target",
     "TargetComparison",
     "Tool",
     "ToolKind",
+    "Turned",
+    "TurningCutting",
     "around",
     "check_fixtures",
     "fixtures_of",
+    "grooving_tool",
+    "iso_insert",
     "make_profile",
     "read_stl",
+    "threading_tool",
     "tool_number",
     "tool_of_remark",
 ]

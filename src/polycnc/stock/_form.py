@@ -16,9 +16,11 @@ from polycnc.stock._solid import solid_stock
 from polycnc.stock._stock import Box, Stock, check_cell
 from polycnc.stock._target import TOLERANCE_MM, Target, check_tolerance
 from polycnc.stock._tool import Tool
+from polycnc.stock._turned import Turned
 
 MARGIN_MM = 1.0
 """Of an `auto` body around what is cut."""
+_FINER_TURNED = 5
 CELLS_ACROSS = 1000
 """How many cells there are along the longer side where no resolution is given."""
 _FORMS = "auto, box=X0,Y0,Z0,X1,Y1,Z1, cylinder=D,Z0,Z1 or the name of an STL file"
@@ -74,6 +76,24 @@ class Form:
         return Stock(
             box, self.cell_mm or _cell_mm(max(b - a for a, b in zip(box.low[:2], box.high, strict=False)))
         )
+
+    def turned_body(self, course: Rows) -> Turned:
+        """Return the body that a lathe turns, for a course of the tool: X is the distance from the axis.
+
+        Raises:
+            UsageError: nothing is cut, or a body that no lathe turns.
+        """
+        if self.fixtures or self.target is not None:
+            raise UsageError(
+                "fixtures and targets on a lathe", hint="They are for three axes: leave them out."
+            )
+        if self.text == "auto":
+            diameter, low, high = around_turned(course)
+        elif self.text.startswith("cylinder="):
+            diameter, low, high = numbers_of(self.text, self.text.partition("=")[2], 3)
+        else:
+            raise UsageError(f"'{self.text}' on a lathe", hint="Write auto or cylinder=D,Z0,Z1.")
+        return Turned(diameter, low, high, self.cell_mm or _cell_mm((high - low) / _FINER_TURNED))
 
     def target_of(self, stock: Stock) -> Target | None:
         """Return what is to come out of a body; None if that is not said.
@@ -142,6 +162,28 @@ def around(course: Rows, tools: Mapping[int, Tool]) -> Box:
     for (x, y), away in zip(end[deep, :2].tolist(), radius[1:][deep].tolist(), strict=True):
         _leave_out((x, y), away, low, high)
     return Box((low[0], low[1], low[2]), (high[0], high[1], high[2]))
+
+
+def around_turned(course: Rows) -> tuple[float, float, float]:
+    """Return diameter and ends along Z of the bar that holds what is turned.
+
+    It is as thick as the tool gets at a feed, ends 1 mm behind its last place, and begins where it is faced, at program
+    zero if it is not.
+
+    Raises:
+        NoStockError: nothing is cut.
+    """
+    begin, end = course.tip[:-1], course.tip[1:]
+    cuts = ~course.rapid[1:] & np.any(begin != end, axis=1)
+    if not cuts.any():
+        raise NoStockError(
+            "the program cuts nothing: no stock can be told", hint="Give one, like cylinder=30,-60,0."
+        )
+    places = np.concatenate((begin[cuts], end[cuts]))
+    faces = cuts & (np.abs(begin[:, 2] - end[:, 2]) < 1e-6) & (end[:, 0] <= 0.0)
+    high = float(end[faces][:, 2].max()) if faces.any() else 0.0
+    low = float(places[:, 2].min()) - MARGIN_MM
+    return 2.0 * float(np.abs(places[:, 0]).max()), low, max(high, low + 2.0 * MARGIN_MM)
 
 
 def _leave_out(place: tuple[float, float], radius: float, low: list[float], high: list[float]) -> None:

@@ -16,7 +16,7 @@ Integers = npt.NDArray[np.int64]
 class Rows:
     """Hold a piece of a record, one row a cycle: `tip` is the end of the tool (mm).
 
-    `turns` is how the spindle does: 1 clockwise (M3), -1 the other way, 0 not at all.
+    `turns` are those of the spindle in a minute: above zero clockwise (M3), below the other way; 0: it is at rest.
     """
 
     t_s: Floats
@@ -24,7 +24,7 @@ class Rows:
     block: Integers
     tool: Integers
     rapid: npt.NDArray[np.bool_]
-    turns: npt.NDArray[np.int8]
+    turns: Floats
 
     def columns(self) -> tuple[npt.NDArray[Any], ...]:
         """Return the columns in their order."""
@@ -46,6 +46,6 @@ class Rows:
 def joined(pieces: list[Rows]) -> Rows:
     """Return pieces of a record as one."""
     whole, flags = np.zeros(0, np.int64), np.zeros(0, np.bool_)
-    empty = Rows(np.zeros(0), np.zeros((0, 3)), whole, whole, flags, flags.astype(np.int8))
+    empty = Rows(np.zeros(0), np.zeros((0, 3)), whole, whole, flags, np.zeros(0))
     columns: Any = zip(*(each.columns() for each in [empty, *pieces]), strict=True)
     return Rows(*(np.concatenate(column) for column in columns))

@@ -2,7 +2,7 @@
 
 All lengths are mm. A field is a grid of heights [rows along y, columns along x] at the middle of its cells.
 Over one cell the lowest point of the body is the least of `slope * s + h(distance)` along the chord, which each piece
-of the outline has in closed form; only a rounded corner on a slope is found by halving.
+of the outline has in closed form; only a rounded corner on a slope is found step by step.
 """
 
 from __future__ import annotations
@@ -20,7 +20,8 @@ from polycnc.stock._profile import ARC_R, BEGIN_Z, CENTRE_R, CENTRE_Z, FROM_R, S
 Floats = npt.NDArray[np.float64]
 
 _FAR = 1e300
-_BISECTIONS = 24
+_CORNER_MM = 1e-6
+_STEPS_TO_CORNER = 48
 _BOUNDS = 1024
 _CELLS_A_STEP = 5  # most are left as they are
 _REACH_CELLS = 0.6  # half the length of what is a short way
@@ -90,18 +91,24 @@ def _gradient(row: Floats, q2: float, slope: float, w: float) -> float:
 
 @compiled
 def _on_corner(row: Floats, q2: float, slope: float, low: float, high: float) -> float:
-    """Return where from `low` to `high` a rounded corner is lowest over a cell on a slope."""
-    if _gradient(row, q2, slope, low) >= 0.0:
+    """Return where from `low` to `high` a corner is lowest over a cell on a slope, to `_CORNER_MM` in height."""
+    below = _gradient(row, q2, slope, low)
+    if below >= 0.0:
         return low
-    if _gradient(row, q2, slope, high) <= 0.0:
+    above = _gradient(row, q2, slope, high)
+    if above <= 0.0:
         return high
-    w = 0.5 * (low + high)
-    for _ in range(_BISECTIONS):
-        if _gradient(row, q2, slope, w) > 0.0:
-            high = w
+    w = low
+    for step in range(_STEPS_TO_CORNER):
+        # Along the secant, and halved each other time: that gets there however steep one end is.
+        w = 0.5 * (low + high) if step % 2 else (low * above - high * below) / (above - below)
+        here = _gradient(row, q2, slope, w)
+        if abs(here) * (high - low) < _CORNER_MM:
+            break
+        if here > 0.0:
+            high, above = w, here
         else:
-            low = w
-        w = 0.5 * (low + high)
+            low, below = w, here
     return w
 
 

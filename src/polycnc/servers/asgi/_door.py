@@ -13,6 +13,7 @@ from starlette.types import ASGIApp
 
 from polycnc.errors import UsageError
 from polycnc.servers.asgi._connection import Refuse, Treat, connections_of, treated_as_usual
+from polycnc.servers.machines import peers_of
 
 _END_S = 0.5
 
@@ -69,6 +70,11 @@ class AsgiDoor:
         """Its URL."""
         host = f"[{self._address}]" if ":" in self._address else self._address
         return f"http://{host}:{self._port}"
+
+    @property
+    def clients(self) -> list[str]:
+        """The addresses of the clients that are connected now."""
+        return peers_of(each.transport for each in self._server.server_state.connections)
 
     async def start(self) -> None:
         """Listen.

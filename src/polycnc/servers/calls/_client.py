@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 
 from polycnc.controllers.library.clib import CLibrary
 from polycnc.servers.calls._caller import Caller
-from polycnc.servers.calls._frames import CallError, answer_frame
+from polycnc.servers.calls._frames import CallError
 from polycnc.servers.calls._trace import Trace
 from polycnc.servers.machines import AS_USUAL, Treatment
 
@@ -54,13 +54,13 @@ def _text(said: bytes) -> str:
 class CallClient:
     """Take the bytes of one client and return what it gets; after `ended` it gets nothing more.
 
-    `find` returns the caller for a library, or None if no machine here has it. `tell` is told in a sentence what was
-    refused. Whole frames are carried out one after the other. `treat` counts a call and says how it is
-    to be treated: what is dropped ends the connection and is not carried out, and `delay_s` is how much later all
+    `find` returns the caller for a library and a packing, or None if no machine here has it. `tell` is told in a
+    sentence what was refused. Whole frames are carried out one after the other. `treat` counts a call and says how it
+    is to be treated: what is dropped ends the connection and is not carried out, and `delay_s` is how much later all
     answers of the last bytes come.
     """
 
-    find: Callable[[str], Caller | None]
+    find: Callable[[str, int], Caller | None]
     tell: Callable[[str], None] = lambda _: None
     trace: Trace | None = None
     now_s: Callable[[], float] = lambda: 0.0
@@ -76,57 +76,73 @@ class CallClient:
         """Carry out what is whole with these bytes."""
         if self.ended:
             return b""
-        self._behind += data
+        behind = self._behind
+        if behind:
+            behind += data
         self.delay_s = 0.0
         sent = list[bytes]()
         try:
-            if len(self._behind) > _MOST_BEHIND:
+            if len(behind) > _MOST_BEHIND:
                 raise CallError(f"more than {_MOST_BEHIND} bytes wait")
-            while self._behind and not self.ended and (more := self._one()) is not None:
-                sent.append(more)
+            at = self._go(behind or data, sent)
+            if behind:
+                del behind[:at]
+            else:
+                behind += data[at:]
         except CallError as error:
             self.tell(str(error))
             self.ended = True
-        return b"".join(sent)
+        return sent[0] if len(sent) == 1 else b"".join(sent)
 
-    def _one(self) -> bytes | None:
-        """Return the answer to the next whole thing, None if there is none.
+    def _go(self, there: bytes | bytearray, sent: list[bytes]) -> int:
+        """Answer one whole thing after the other; return how many bytes they had.
 
         Raises:
-            CallError: It is nothing that a library sends.
+            CallError: Something is nothing that a library sends.
         """
-        behind = self._behind
-        if self.caller is None:
-            if not MAGIC.startswith(behind[: len(MAGIC)]):
-                raise CallError("a client that does not say hello")
-            return self._welcomed(self._taken(_HELLO.size)) if len(behind) >= _HELLO.size else None
-        if len(behind) < _SIZE.size:
-            return None
-        (size,) = _SIZE.unpack_from(behind)
-        if not _HEAD.size <= size <= _MOST - _SIZE.size:
-            raise CallError(f"a frame of {size} bytes")
-        if len(behind) < _SIZE.size + size:
-            return None
+        at, most = 0, len(there)
+        while at < most and not self.ended:
+            if self.caller is None:
+                if not MAGIC.startswith(there[: len(MAGIC)]):
+                    raise CallError("a client that does not say hello")
+                if most < _HELLO.size:
+                    break
+                sent.append(self._welcomed(bytes(there[: _HELLO.size])))
+                at = _HELLO.size
+                continue
+            if most - at < _SIZE.size:
+                break
+            (size,) = _SIZE.unpack_from(there, at)
+            if not _HEAD.size <= size <= _MOST - _SIZE.size:
+                raise CallError(f"a frame of {size} bytes")
+            end = at + _SIZE.size + size
+            if most < end:
+                break
+            number, serial = _HEAD.unpack_from(there, at + _SIZE.size)
+            answer = self._answered(self.caller, number, serial, bytes(there[at + _BEGIN : end]))
+            if answer is None:
+                break
+            sent.append(answer)
+            at = end
+        return at
+
+    def _answered(self, caller: Caller, number: int, serial: int, packed: bytes) -> bytes | None:
+        """Carry out a call and return its answer; None if it is dropped."""
         treatment = self.treat()
         if treatment.drop:
             self.ended = self.dropped = True
             return None
-        self.delay_s = max(self.delay_s, treatment.delay_s)
-        number, serial = _HEAD.unpack_from(behind, _SIZE.size)
-        call, given, done = self.caller.carry_out(number, self._taken(_SIZE.size + size)[_BEGIN:])
+        if treatment.delay_s > self.delay_s:
+            self.delay_s = treatment.delay_s
+        layout, done = caller.carry_out(number, packed)
         if self.trace is not None:
-            self.trace.write(self.now_s(), self.number, given, done)
-        return answer_frame(call, serial, done, _MOST - _SIZE.size)
-
-    def _taken(self, size: int) -> bytes:
-        made = bytes(self._behind[:size])
-        del self._behind[:size]
-        return made
+            self.trace.write(self.now_s(), self.number, layout.unpacked(packed), done)
+        return layout.answered(serial, done, _MOST - _SIZE.size)
 
     def _welcomed(self, said: bytes) -> bytes:
         """Answer a hello: with 0, or with the code that every call gets."""
         hello = Hello.of(said)
-        caller = self.find(hello.name)
+        caller = self.find(hello.name, hello.packing)
         if caller is None:
             raise CallError(f"no machine here has the library {hello.name}")
         refusal = _unfit(hello, caller.library)
@@ -141,6 +157,8 @@ class CallClient:
 
 def _unfit(hello: Hello, library: CLibrary) -> str:
     """Return what is wrong with a library, "" if nothing is."""
+    if hello.packing != library.packing:
+        return f"{hello.name} packs structures to {hello.packing} bytes"
     if hello.table != library.table_hash:
         return f"{hello.name} {hello.version} has another table of functions: make it anew with polycnc clib"
-    return f"{hello.name} packs structures to {hello.packing} bytes" if hello.packing else ""
+    return ""

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Protocol, TypeVar
 
 from polycnc.errors import UsageError
-from polycnc.servers.machines import AS_USUAL, Treatment, notice_loss
+from polycnc.servers.machines import AS_USUAL, Treatment, notice_loss, peers_of
 
 R = TypeVar("R")
 PORT = 8123
@@ -81,6 +81,13 @@ class GrblServer:
     def said(self) -> str:
         """Where it is."""
         return f"{self.address}:{self.port}" + (f" and {self._path}" if self._path else "")
+
+    @property
+    def clients(self) -> list[str]:
+        """The address of the sender that is connected now, or the terminal that it writes to."""
+        if self._client is not None:
+            return peers_of([self._client.transport])
+        return [self._path] if self._path and self._from_terminal else []
 
     async def start(self) -> None:
         """Listen.

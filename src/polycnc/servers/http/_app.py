@@ -17,6 +17,7 @@ from polycnc import __version__
 from polycnc.errors import PolycncError
 from polycnc.servers.http._description import describe
 from polycnc.servers.http._guard import COOKIE, Guard, TooLargeError
+from polycnc.servers.http._lease import HeldError
 from polycnc.servers.http._problem import of_error, problem
 from polycnc.servers.http._routes import Api
 from polycnc.servers.http._statuses import Statuses
@@ -29,6 +30,7 @@ FILES = {
     "": ("index.html", "text/html; charset=utf-8"),
     "icon.svg": ("icon.svg", "image/svg+xml"),
     "charts.js": ("charts.js", "text/javascript; charset=utf-8"),
+    "lease.js": ("lease.js", "text/javascript; charset=utf-8"),
     "page.css": ("page.css", "text/css; charset=utf-8"),
     "page.js": ("page.js", "text/javascript; charset=utf-8"),
     "pages.js": ("pages.js", "text/javascript; charset=utf-8"),
@@ -86,6 +88,10 @@ def _add_errors(app: FastAPI, log: Log) -> None:
     @app.exception_handler(PolycncError)
     async def refused(_: Request, error: PolycncError) -> Response:
         return of_error(error)
+
+    @app.exception_handler(HeldError)
+    async def held(_: Request, error: HeldError) -> Response:
+        return problem(409, error.what, error.hint, reason="held")
 
     @app.exception_handler(TooLargeError)
     async def too_large(_: Request, __: TooLargeError) -> Response:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import asyncio
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
-from typing import Any, TypeVar
+from typing import Any, Protocol, TypeVar
 
 from polycnc.cnc import Control
 from polycnc.errors import PolycncError
@@ -31,6 +31,18 @@ AS_USUAL = Treatment()
 
 def _as_usual(_: str) -> Treatment:
     return AS_USUAL
+
+
+class OpenDoor(Protocol):
+    """A door to a machine, as others see it."""
+
+    @property
+    def said(self) -> str:
+        """Where it is, as users write it: a URL or host:port; known after `start`."""
+
+    @property
+    def clients(self) -> list[str]:
+        """The addresses of the clients that are connected now."""
 
 
 class MachineError(PolycncError):
@@ -59,6 +71,9 @@ class ServedMachine:
     variables: Values = NO_VARIABLES
     treat: Callable[[str], Treatment] = _as_usual
     """A door tells its name with every request, and does with it what is said."""
+
+    doors: dict[str, OpenDoor] = field(default_factory=dict)
+    """The doors to it by name, those that it shares with others among them."""
 
     def __post_init__(self) -> None:
         if self.programs is None and self.find_control is not None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import asyncio
 
 from polycnc.errors import UsageError
-from polycnc.servers.machines import LOOPBACK, ServedMachine, treatment_of
+from polycnc.servers.machines import LOOPBACK, ServedMachine, notice_loss, peers_of, treatment_of
 from polycnc.servers.mtconnect import VERSIONS, model_of
 from polycnc.servers.plant import see
 from polycnc.servers.shdr._lines import Adapter, Session
@@ -38,6 +38,11 @@ class ShdrServer:
     def said(self) -> str:
         """Where it is."""
         return f"{self._address}:{self._port}"
+
+    @property
+    def clients(self) -> list[str]:
+        """The addresses of the clients that are connected now."""
+        return peers_of(writer.transport for writer in self._agents)
 
     async def start(self) -> None:
         """Listen.
@@ -97,6 +102,7 @@ class ShdrServer:
         if len(self._agents) >= _MOST_AGENTS:
             writer.close()
             return
+        notice_loss(writer.transport)
         session = Session()
         try:
             if not await self._treated(writer):

@@ -7,6 +7,7 @@ nobody is there. `Slot` is an argument as bytes; `write_header`, `write_source`,
 from polycnc.controllers.library.clib._declarations import write_basic, write_csharp, write_pascal
 from polycnc.controllers.library.clib._header_text import write_header
 from polycnc.controllers.library.clib._names import write_definitions
+from polycnc.controllers.library.clib._packing import alike, copied, length_in
 from polycnc.controllers.library.clib._slots import Call, CLibrary, Slot, Way
 from polycnc.controllers.library.clib._source import PORT, write_source
 
@@ -16,6 +17,9 @@ __all__ = [
     "Call",
     "Slot",
     "Way",
+    "alike",
+    "copied",
+    "length_in",
     "write_basic",
     "write_csharp",
     "write_definitions",

@@ -92,7 +92,7 @@ _BASIC = _Language(
 
 def _taken(library: CLibrary, language: _Language) -> frozenset[str]:
     """Return the names of types and functions, which arguments must not have."""
-    names = [*library.header.classes, *library.functions, *library.aliases]
+    names = [*library.classes, *library.functions, *library.aliases]
     return frozenset(names if language.cases else map(str.lower, names))
 
 
@@ -136,7 +136,7 @@ def write_pascal(library: CLibrary) -> str:
     ]  # fmt: skip
     if "IMC_HANDLE" in library.declarations:
         lines.append("  IMC_HANDLE = Pointer;")
-    for cls in library.header.classes.values():
+    for cls in library.classes.values():
         pack = cls._table_.pack or 8
         lines.append(f"  {{$IFDEF FPC}}{{$PACKRECORDS {pack}}}{{$ELSE}}{{$A{pack}}}{{$ENDIF}}")
         lines.append(f"  {language.of(cls)} = record")
@@ -195,7 +195,7 @@ def write_csharp(library: CLibrary) -> str:
         f"public static class {name.capitalize()}", "{",
         *(f"    public const int {each} = {value};" for each, value in _constants(library, language)), "",
     ]  # fmt: skip
-    for cls in library.header.classes.values():
+    for cls in library.classes.values():
         lines += [*_csharp_structure(cls), ""]
     for each, function in _functions(library):
         names = language.names([argument.name for argument in function.arguments], frozenset())
@@ -266,7 +266,7 @@ def write_basic(library: CLibrary) -> str:
         f"' {name}: constants, types and functions. {_WRITTEN} {library.kind}.", "Option Explicit", "",
         *(f"Public Const {each} As Long = {value}" for each, value in _constants(library, language)), "",
     ]  # fmt: skip
-    for cls in library.header.classes.values():
+    for cls in library.classes.values():
         lines += [*_basic_type(cls), ""]
     for each, function in _functions(library):
         names = language.names([argument.name for argument in function.arguments], taken)

@@ -2,6 +2,7 @@
 import { TEXTS } from "/texts.js";
 import { Pages } from "/pages.js";
 import { Charts } from "/charts.js";
+import { Lease } from "/lease.js";
 import { Path } from "/path.js";
 
 const SWITCHES = ["single_block", "dry_run", "optional_stop", "block_delete", "machine_lock"];
@@ -47,14 +48,14 @@ customElements.define("cnc-axes", Axes);
 
 const state = { machine: "", status: null, socket: null, seen: 0, lines: "", held: new Map(), stamp: 0, chosen: 0, breakpoints: [] };
 let pages = null;
-const path = new Path($("path"), $("views")), charts = new Charts($("charts"));
+const path = new Path($("path"), $("views")), charts = new Charts($("charts")), lease = new Lease(ask);
 const url = (rest) => `/api/machines/${encodeURIComponent(state.machine)}/${rest}`;
 
 function say(text) { put($("said"), text); clearTimeout(say.timer); say.timer = setTimeout(() => put($("said"), ""), 6000); }
 
 async function ask(rest, options) {
   try {
-    const answer = await fetch(url(rest), options);
+    const answer = await fetch(url(rest), { ...options, headers: { "polycnc-key": lease.key } });
     if (!answer.ok) {
       const problem = await answer.json();
       say(`${problem.detail}. ${problem.hint}`);
@@ -198,6 +199,7 @@ function connect() {
     put($("connection"), TEXTS.connected);
     show(message.status);
     if (document.activeElement !== $("rate")) $("rate").value = String(message.rate);
+    lease.show(message.lease);
     showInventory(message.inventory);
   };
   socket.onclose = () => { if (state.socket === socket) { releaseAll(); setTimeout(connect, AGAIN_MS); } };
@@ -213,7 +215,7 @@ setInterval(() => {
 // ---------------------------------------------------------------- by hand
 
 function send(axis, direction, rapid) {
-  if (state.socket?.readyState === WebSocket.OPEN) state.socket.send(JSON.stringify({ jog: { axis, direction, rapid } }));
+  if (state.socket?.readyState === WebSocket.OPEN) state.socket.send(JSON.stringify({ jog: { axis, direction, rapid }, key: lease.key }));
 }
 function press(axis, direction) {
   if (!state.status) return;
@@ -300,7 +302,7 @@ function build(axes) {
     const file = event.dataTransfer.files[0];
     if (file) { name.value = file.name.replace(/\.[^.]*$/, ""); text.value = await file.text(); }
   });
-  pages = new Pages($("store"), programs, { make, ask, command, say });
+  pages = new Pages($("store"), programs, { make, ask, command, say, lease });
   pages.status = state.status;
   $("path").setAttribute("aria-label", TEXTS.path);
   $("steps").replaceChildren(
@@ -314,7 +316,7 @@ function build(axes) {
   const rate = make("select", { id: "rate", "aria-label": TEXTS.rate }, ...RATES.map((value) => make("option", { value: String(value) }, value ? `${value} ×` : TEXTS.frozen)));
   rate.onchange = () => ask("clock", { method: "POST", body: JSON.stringify({ rate: Number(rate.value) }) });
   const far = make("button", { id: "far", "aria-pressed": "false", onclick: () => far.setAttribute("aria-pressed", document.body.classList.toggle("far")) }, TEXTS.far);
-  $("tools").replaceChildren(rate, far);
+  $("tools").replaceChildren(rate, far, lease.button);
 }
 
 async function begin() {
