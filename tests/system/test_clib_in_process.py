@@ -24,11 +24,21 @@ from support.facade_programs import SYSTEM, facade_says
 from support.fwlib_calls import AT_HOME, HANDLE, before, number_of, size_of
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
-SAID = {
-    "apci": "init 0, board 4, 3 axes\nat 12.500\n",
-    "imc": "adapters 0: 1\nopen 0\nmove 0\nat 6250, moving 0\nclose 0\n",
+PROGRAMS = {
+    "fanuc_macro": "fanuc",
+    "apci_jog": "apci",
+    "apci_gantry": "apci",
+    "imc_move": "imc",
+    "imc_line_shaft": "imc",
 }
-PROGRAMS = {"fanuc": "fanuc_macro", "apci": "apci_jog", "imc": "imc_move"}
+SAID = {
+    "apci_jog": "init 0, board 4, 3 axes\nat 12.500\n",
+    "apci_gantry": "init 0, 3 axes\nhomed 3 axes\nat 60.000 50.000 0.000\nerrors 0\n",
+    "imc_move": "adapters 0: 1\nopen 0\nmove 0\nat 6250, moving 0\nclose 0\n",
+    "imc_line_shaft": "open 0\nbefore: the cutter is at 0\nafter: the cutter runs as the master: 1\n"
+    "slaves by the master: 0.50 -1.00\nclose 0\n",
+}
+"""The arc of the gantry is half a circle around (60, 25) from (60, 0); the gears are 0.5 and -1."""
 
 
 def _built(kind: str, folder: Path) -> Path:
@@ -64,14 +74,14 @@ def test_functions_answer_and_write_as_the_facade_in_the_same_process(
 
 
 @pytest.mark.long
-@pytest.mark.parametrize("kind", PROGRAMS)
-def test_a_program_says_the_same_without_a_server(kind: str, tmp_path: Path) -> None:
+@pytest.mark.parametrize("name", PROGRAMS)
+def test_a_program_says_the_same_without_a_server(name: str, tmp_path: Path) -> None:
+    kind = PROGRAMS[name]
     _built(kind, tmp_path)
     program = tmp_path / "client"
-    source = EXAMPLES / "c" / f"{PROGRAMS[kind]}.c"
-    name = library_of(kind).name
+    source = EXAMPLES / "c" / f"{name}.c"
     subprocess.run(
-        ["gcc", "-std=c11", "-I", tmp_path, "-o", program, source, "-L", tmp_path, f"-l{name}",
+        ["gcc", "-std=c11", "-I", tmp_path, "-o", program, source, "-L", tmp_path, f"-l{library_of(kind).name}",
          f"-Wl,-rpath,{tmp_path}"], check=True,
     )  # fmt: skip
     file = tmp_path / "plant.toml"
@@ -80,13 +90,13 @@ def test_a_program_says_the_same_without_a_server(kind: str, tmp_path: Path) -> 
         "imc": 'controller = "imc"\nfile = "card.toml"',
         "fanuc": 'controller = "fanuc"',
     }
-    (tmp_path / "card.toml").write_text("number_of_axes = 2\nready = true\n")
+    (tmp_path / "card.toml").write_text("number_of_axes = 4\nready = true\n")
     file.write_text(f'[doors]\nhttp = 0\n[[machine]]\nname = "a"\n{rows[kind]}\n')
     ran = subprocess.run(
         [program], env=environment(POLYCNC_SERVED=str(file)), capture_output=True, text=True, timeout=60,
         check=False,
     )  # fmt: skip
-    assert (ran.stdout, ran.stderr) == (SAID.get(kind) or facade_says(), "")
+    assert (ran.stdout, ran.stderr) == (SAID.get(name) or facade_says(), "")
 
 
 def test_a_file_without_such_a_machine_has_none(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:

@@ -92,6 +92,47 @@ def test_a_program_against_the_command(tmp_path: Path, capsys: pytest.CaptureFix
     assert {**json.loads(lines[1]), "time_s": shown["time_s"]} == shown
 
 
+def test_a_collector_opens_anew_what_it_has_lost(tmp_path: Path) -> None:
+    folder, made = built("fanuc"), tmp_path / "collector"
+    subprocess.run(
+        ["gcc", "-std=c11", *WARNINGS, "-I", folder, "-o", made, EXAMPLES / "c" / "fanuc_collector.c",
+         "-L", folder, "-lfwlib32", f"-Wl,-rpath,{folder}"], check=True,
+    )  # fmt: skip
+    first = Door(("fanuc", Machinery(axes=2)))
+    port = int(first.place.rpartition(":")[2])
+    with subprocess.Popen(
+        [made, "127.0.0.1", str(port)],
+        stdin=subprocess.PIPE,
+        stdout=subprocess.PIPE,
+        text=True,
+        env=environment(),
+    ) as program:
+        assert program.stdin is not None
+        assert program.stdout is not None
+
+        def ask(lines: int) -> list[str]:
+            assert program.stdin is not None
+            assert program.stdout is not None
+            program.stdin.write("go\n")
+            program.stdin.flush()
+            return [program.stdout.readline().rstrip() for _ in range(lines)]
+
+        told = "mode 1, run 0, program 0, at 0 0, feed 0, alarms 0"
+        assert ask(2) == ["open 0", f"1: {told}"]
+        assert ask(1) == [f"2: {told}"]
+        first.close()
+        assert ask(1) == ["3: lost, -16"]
+        assert ask(1) == ["open -16"]
+        second = Door(("fanuc", Machinery(axes=2)), port=port)
+        try:
+            assert ask(2) == ["open 0", f"4: {told}"]
+            program.stdin.close()
+            assert program.stdout.read() == "free 0\n"
+            assert program.wait(20) == 0
+        finally:
+            second.close()
+
+
 def _shown(title: str) -> str:
     """Return what the tutorial shows under a title."""
     text = (EXAMPLES.parent / "docs" / "tutorials" / "your-old-program.md").read_text("utf-8")
