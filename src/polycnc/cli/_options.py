@@ -117,7 +117,7 @@ Resolution = Annotated[
     ),
 ]
 SaveStock = Annotated[
-    Path | None, typer.Option(help="Write what is left of the stock to an .stl file.", metavar="FILE")
+    Path | None, typer.Option(help="Write what is left of the stock to an .stl or .3mf file.", metavar="FILE")
 ]
 SaveParameters = Annotated[
     Path | None,

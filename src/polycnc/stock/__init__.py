@@ -7,6 +7,7 @@ from polycnc.stock._fixtures import check_fixtures, fixtures_of
 from polycnc.stock._form import Form, NoStockError, around
 from polycnc.stock._insert import Insert, InsertKind, grooving_tool, iso_insert, threading_tool
 from polycnc.stock._mesh import Mesh
+from polycnc.stock._mesh_files import MESH_FORMATS
 from polycnc.stock._profile import Arc, Line, Profile, make_profile
 from polycnc.stock._rows import Rows
 from polycnc.stock._solid import read_stl
@@ -21,6 +22,7 @@ from polycnc.stock._voxels import Voxels
 from polycnc.stock._ways import Tally
 
 __all__ = [
+    "MESH_FORMATS",
     "TOLERANCE_MM",
     "Arc",
     "Box",
