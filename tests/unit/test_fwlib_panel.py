@@ -87,6 +87,7 @@ def test_a_bit_selects_its_signal_alone(bit: int, name: str, value: int) -> None
 @pytest.mark.covers(
     *(f"fanuc.cnc_rdopnlsgnl.slct_data.bit{bit}" for bit in UNUSED),
     *(f"fanuc.IODBSGNL.type.bit{bit}" for bit in UNUSED),
+    *(f"fanuc.IODBSGNL.{element}" for element in ("datano", "hndl_ax", "hndl_mv", "spdl_ovrd")),
 )
 def test_unused_bits_select_nothing() -> None:
     control = PowerMate()

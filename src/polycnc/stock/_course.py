@@ -6,7 +6,7 @@ import numpy as np
 import numpy.typing as npt
 
 from polycnc.stock._chords import find_chords
-from polycnc.stock._cutting import Rows, joined
+from polycnc.stock._rows import Rows, joined
 
 Floats = npt.NDArray[np.float64]
 
