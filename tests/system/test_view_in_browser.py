@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 import polycnc
-from polycnc.stock import read_stl
+from polycnc.stock import Stock, read_stl
 from support.browser import browser
 from support.command import polycnc as command
 
@@ -301,7 +301,7 @@ def test_the_slider_cuts_back_and_forth(chromium: Any, tmp_path: Path) -> None:
         assert np.array_equal(seen.setdefault(share, shown), shown)
     assert seen[0.3][0] < seen[0.7][0] < seen[1.0][0]
     result = polycnc.run(EXAMPLES / "bracket.nc", "mill3", stock="auto", resolution_mm=0.5)
-    assert result.stock is not None
+    assert isinstance(result.stock, Stock)
     heights = result.stock.heights - result.stock.grid.bottom
     assert seen[1.0][1::2] == pytest.approx(heights.ravel(), abs=0.01)
     for how in ("stl", "3mf"):

@@ -342,15 +342,20 @@ HOLDS = {
     ],
 )
 def test_the_tolerance_is_absolute_and_holds_for_all_numbers(operator: str, holds: tuple[bool, ...]) -> None:
-    macro = f"IF(X{operator}Y)\nyes\nELSE\nno\nENDIF\nIF(Y+2>9 || X+Z{operator}Y+Z)\nalso\nENDIF"
+    control = control_with(
+        {"RAPID": f"IF(X{operator}Y)\nyes\nELSE\nno\nENDIF\nIF(Y+2>9 || X+Z{operator}Y+Z)\nalso\nENDIF"}
+    )
+    written: list[str] = []
+    run = control.start(written.append)
     for base in (-12.25, -0.00002, 0.0, 7.0, 4000.5):
         for difference, wanted in zip((-FAR, -NEAR, 0.0, NEAR, FAR), holds, strict=True):
-            words: dict[str, float | str] = {"X": base + difference, "Y": base, "Z": -base}
-            found = blocks_of(macro, words=words)
-            assert found == (["yes"] if wanted else ["no"]) + ["also"] * (wanted or base > 7)
+            run.call("RAPID", {"X": base + difference, "Y": base, "Z": -base})
+            also = ["also\n"] * (wanted or base > 7)
+            assert [written.pop(0) for _ in range(len(written))] == ["yes\n" if wanted else "no\n", *also]
     for difference, like in ((-0.0001, holds[0]), (0.0001, holds[-1])):  # no smaller difference: not equal
-        words = {"X": difference, "Y": 0.0, "Z": 3.0}
-        assert blocks_of(f"IF(X{operator}Y)\nyes\nENDIF", words=words) == ["yes"] * like
+        run.call("RAPID", {"X": difference, "Y": 0.0, "Z": 3.0})
+        assert written.pop(0) == ("yes\n" if like else "no\n")
+        written.clear()
 
 
 REFUSED = [

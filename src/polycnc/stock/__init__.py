@@ -16,7 +16,9 @@ from polycnc.stock._target import TOLERANCE_MM, Target, TargetComparison
 from polycnc.stock._tool import Tool, ToolKind
 from polycnc.stock._tool_text import tool_number, tool_of_remark
 from polycnc.stock._turned import Turned
+from polycnc.stock._turned_cutting import TurnedCutting
 from polycnc.stock._turning import TurningCutting
+from polycnc.stock._voxels import Voxels
 from polycnc.stock._ways import Tally
 
 __all__ = [
@@ -44,7 +46,9 @@ __all__ = [
     "Tool",
     "ToolKind",
     "Turned",
+    "TurnedCutting",
     "TurningCutting",
+    "Voxels",
     "around",
     "check_fixtures",
     "fixtures_of",

@@ -168,14 +168,14 @@ class _Line(asyncio.BufferedProtocol):
         if self._client.dropped:
             self.abort()
         elif self._client.delay_s and sent:  # the next call is not read before it is answered
-            self._transport.pause_reading()
+            self.transport.pause_reading()
             self._later = asyncio.get_running_loop().call_later(self._client.delay_s, self._send_late, sent)
         else:
             self._send_now(sent)
 
     def _send_late(self, sent: bytes) -> None:
         self._later = None
-        self._transport.resume_reading()
+        self.transport.resume_reading()
         self._send_now(sent)
 
     def _send_now(self, sent: bytes) -> None:
