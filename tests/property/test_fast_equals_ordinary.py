@@ -119,7 +119,7 @@ def recorded(channel: Channel) -> list[object]:
     tags = channel.machine.state.seg.row["tag"][:tail].tolist()
     marks = channel.writer.marks or ()
     records = [channel.records.block(tag) for tag in [*tags, *(tag for _, tag in marks)]]
-    said = [[tag and bool(channel.records.spindle_turns(np.array([tag]))[0]) for tag in tags]]
+    said = [[tag and float(channel.records.spindle_turns(np.array([tag]))[0]) for tag in tags]]
     return [said, [count for count, _ in marks], *((each.line, each.modal) for each in records if each)]
 
 

@@ -164,52 +164,67 @@ def test_a_taken_port_ends_it_with_its_name(served: Served) -> None:
     assert done.stdout == ""
 
 
+@pytest.fixture(scope="module")
+def chromium() -> Iterator[Any]:
+    with browser() as running:
+        yield running
+
+
+TABS = ("programs", "tools", "offsets", "parameters", "variables", "alarms", "snapshots", "connections")
+
+
 @pytest.mark.parametrize("size", [(1280, 800), (820, 1180), (390, 844)])
-def test_the_page_operates_the_machine(size: tuple[int, int], served: Served, tmp_path: Path) -> None:
+def test_the_page_operates_the_machine(size: tuple[int, int], served: Served, chromium: Any) -> None:
     served.http.post("/clock", json={"rate": 1})
     served.command("select_mode", mode="auto")
     wrong: list[str] = []
-    with browser() as running:
-        page = running.new_page(viewport={"width": size[0], "height": size[1]})
-        page.on("console", lambda said: wrong.append(said.text) if said.type == "error" else None)
-        page.on("pageerror", lambda error: wrong.append(str(error)))
-        page.on(
-            "request", lambda asked: None if asked.url.startswith(served.url) else wrong.append(asked.url)
-        )
-        page.goto(served.url)
-        page.wait_for_selector("body:not(.lost)")
-        page.fill("#new", "O0044")
-        page.fill("#text", "O0044\nG91 G1 X2 F60\nM30\n")
-        page.click("#save")
-        page.wait_for_selector("#names option[value=O0044]", state="attached")
-        page.select_option("#names", "O0044")
-        page.click("#select")
-        page.click("#cycle_start")
-        page.wait_for_selector("#lines [aria-current]")
-        page.click("#feed_hold")
-        page.wait_for_selector("#run[data-state=hold]")
-        page.click("#single_block")
-        page.wait_for_selector("#single_block[aria-pressed=true]")
-        page.click("#single_block")
-        assert page.locator("#stop").bounding_box()["y"] < size[1]
-        page.click("#stop")
-        page.wait_for_selector("#alarms p")
-        page.click("#stop")
-        page.wait_for_selector("#stop[aria-pressed=false]")
-        page.click("#reset")
-        page.click("[data-mode=jog]")
-        page.wait_for_selector("[data-mode=jog][aria-pressed=true]")
-        before = page.text_content("#X-machine")
-        page.keyboard.down("ArrowRight")
-        while page.text_content("#X-machine") == before:
-            page.wait_for_timeout(20)
-        page.evaluate("window.dispatchEvent(new Event('blur'))")
-        while served.status()["axes"]["X"]["manual"] != "none":
-            page.wait_for_timeout(20)
+    page = chromium.new_page(viewport={"width": size[0], "height": size[1]})
+    page.on("console", lambda said: wrong.append(said.text) if said.type == "error" else None)
+    page.on("pageerror", lambda error: wrong.append(str(error)))
+    page.on("request", lambda asked: None if asked.url.startswith(served.url) else wrong.append(asked.url))
+    page.goto(served.url)
+    page.wait_for_selector("body:not(.lost)")
+    page.fill("#new", "O0044")
+    page.fill("#text", "O0044\nG91 G1 X40 F60\nM30\n")
+    page.click("#save")
+    page.wait_for_selector("#names option[value=O0044]", state="attached")
+    page.select_option("#names", "O0044")
+    page.click("#select")
+    page.click("#cycle_start")
+    page.wait_for_selector("#lines [aria-current]")
+    page.wait_for_selector("#path:not([data-done='0']):not([data-points='0']) canvas")
+    assert page.locator("#charts canvas").count() == 2
+    page.click("#feed_hold")
+    page.wait_for_selector("#run[data-state=hold]")
+    page.click("#single_block")
+    page.wait_for_selector("#single_block[aria-pressed=true]")
+    page.click("#single_block")
+    assert page.locator("#stop").bounding_box()["y"] < size[1]
+    page.click("#stop")
+    page.wait_for_selector("#alarms p")
+    page.click("#stop")
+    page.wait_for_selector("#stop[aria-pressed=false]")
+    page.click("#reset")
+    page.click("[data-mode=jog]")
+    page.wait_for_selector("[data-mode=jog][aria-pressed=true]")
+    before = page.text_content("#X-machine")
+    page.keyboard.down("ArrowRight")
+    while page.text_content("#X-machine") == before:
+        page.wait_for_timeout(20)
+    page.evaluate("window.dispatchEvent(new Event('blur'))")
+    while served.status()["axes"]["X"]["manual"] != "none":
+        page.wait_for_timeout(20)
+    if size[0] > 1000:
         operate_the_pages(page, served)
-        assert page.evaluate("document.documentElement.scrollWidth") <= size[0]
-        assert wrong == []
-        page.close()
+    for tab in TABS:
+        page.click(f"#tab-{tab}")
+        page.wait_for_selector(f"#page-{tab}")
+        assert page.evaluate("document.documentElement.scrollWidth") <= size[0], tab
+    assert page.evaluate("document.documentElement.scrollWidth") <= size[0]
+    assert [
+        each for each in wrong if "409 (Conflict)" not in each
+    ] == []  # what somebody else commands is refused
+    page.close()
 
 
 def operate_the_pages(page: Any, served: Served) -> None:
@@ -251,6 +266,32 @@ def operate_the_pages(page: Any, served: Served) -> None:
     page.wait_for_selector("#keys", state="hidden")
     assert page.locator("#X-work").bounding_box()["height"] > 30
     page.click("#far")
+    operate_the_lease(page, served)
+    for name in ("Top", "Front", "Side", "3-D"):
+        page.click(f"#views button:has-text('{name}')")
+
+
+def operate_the_lease(page: Any, served: Served) -> None:
+    """Command alone, be taken over by another client, see who commands, and get it back when it ends."""
+    page.click("#tab-connections")
+    page.fill("#operator", "Zoë")
+    page.press("#operator", "Enter")
+    page.wait_for_selector("#page-connections td:has-text('127.0.0.1')")
+    doors = {each["door"]: each for each in served.http.get("/connections").json()}
+    assert f"127.0.0.1:{served.focas_port}" == doors["focas"]["address"]
+    assert len(doors["focas"]["clients"]) == 1
+    assert len(doors["http"]["clients"]) >= 2
+    page.click("#lease")
+    until(page, lambda: served.http.get("/lease").json()["holder"] == "Zoë")
+    assert served.command("reset").status_code == 409
+    page.click("#reset")
+    other = {"operator": "Ann", "key": "another-key-1", "take": True}
+    assert served.http.post("/lease", json=other).status_code == 200
+    page.wait_for_selector("body.watching #lease:has-text('Ann commands')")
+    page.click("#cycle_start")
+    page.wait_for_selector("#said:has-text('Ann commands this machine')")
+    assert served.http.delete("/lease", headers={"polycnc-key": "another-key-1"}).status_code == 204
+    page.wait_for_selector("body:not(.watching) #lease:has-text('Command alone')")
 
 
 def until(page: Any, holds: Any) -> None:

@@ -259,3 +259,22 @@ def test_the_reference_page_lists_the_questions_that_there_are() -> None:
         assert sorted(listed) == sorted(there)
 
     visit("plain", PLAIN, ask)
+
+
+def test_a_status_is_answered_as_its_route_does_and_every_answer_is_counted() -> None:
+    async def ask(client: Any, machine: ServedMachine) -> None:
+        from polycnc.servers.http._documents import status_json
+
+        quick = await client.get("/status")
+        assert quick.content == status_json(machine)
+        assert quick.headers["content-type"] == "application/json"
+        routed = await client.get("/inventory")
+        assert set(quick.headers) == set(routed.headers)
+        refused(await client.get("../x/status"), 404)
+        refused(await client.post("/status"), 405)
+        refused(await client.get("/status", headers={"host": "evil.example"}), 421)
+        figures = (await client.get("http://localhost/metrics")).text
+        counted = dict(re.findall(r'^polycnc_http_requests_total\{status="(\d+)"\} (\S+)$', figures, re.M))
+        assert counted == {"200": "2.0", "404": "1.0", "405": "1.0", "421": "1.0"}
+
+    visit("plain", PLAIN, ask)

@@ -72,8 +72,8 @@ def test_a_searched_block_begins_where_the_whole_program_would(
         part.search(line=line, calculate=True)
         run = part.channels[0].run
         assert run is not None
-        assert run.searched is not None
-        assert tuple(round(each, 6) for each in run.searched) == begin
+        assert run.selection.searched is not None
+        assert tuple(round(each, 6) for each in run.selection.searched) == begin
 
 
 @pytest.mark.parametrize(("dialect", "language", "statement"), [each for each in CASES if not each[2]])
@@ -102,8 +102,8 @@ def test_long_plain_programs_are_searched_beyond_what_is_read_at_once() -> None:
             control.search(line=line, calculate=True)
             run = control.channels[0].run
             assert run is not None
-            assert run.searched is not None
-            assert run.searched[0] == line - 2
+            assert run.selection.searched is not None
+            assert run.selection.searched[0] == line - 2
 
 
 def test_custom_macros_do_not_end_at_a_block_that_is_given() -> None:

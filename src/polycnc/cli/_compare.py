@@ -10,7 +10,6 @@ import typer
 
 from polycnc.cli import _options as options
 from polycnc.cli._output import bold, bold_red, columns, print_json, progress_bar, say
-from polycnc.errors import UsageError
 
 if TYPE_CHECKING:
     from polycnc.runner import Comparison, PathDeviation
@@ -35,7 +34,7 @@ def compare_command(
     tolerance: Annotated[
         float,
         typer.Option(
-            help="How far apart the paths may be, mm; more is exit status 1.", metavar="MM", min=0.0
+            help="How far apart the paths may be, mm; more is exit status 1.", metavar="MM", min=0.0, max=1e6
         ),
     ] = 0.01,
     as_json: options.AsJson = False,
@@ -47,11 +46,6 @@ def compare_command(
     """Compare two programs, a program and a trace, or one program on two machines."""
     from polycnc import runner
 
-    if b is None and machine_b is None and dialect_b is None:
-        raise UsageError(
-            f"{a} has nothing to be compared with",
-            hint="Name a second file, or another machine with --machine-b.",
-        )
     other = a if b is None else b
     given = [Path(each) for each in (machine, dialect, machine_b, dialect_b) if each is not None]
     if output is not None:
@@ -59,7 +53,7 @@ def compare_command(
     with progress_bar(f"{a.name} and {other.name}") as bar:
         found = runner.compare(
             a,
-            other,
+            b,
             machine,
             dialect,
             machine_b=machine_b,

@@ -13,10 +13,10 @@ from polycnc.machine._config import (
     PathConfig,
     SpindleConfig,
     TimesConfig,
-    ToolConfig,
 )
 from polycnc.machine._config_axis import AnyAxis, AxisConfig, LinearAxis, LinearServo, RotaryAxis, RotaryServo
 from polycnc.machine._config_probe import SurfaceConfig, first_contact
+from polycnc.machine._config_tool import ToolConfig
 from polycnc.machine._io import IoBits, IoImage, scan_edges
 from polycnc.machine._machine import AxisState, Machine, MachineStatus, Reason
 from polycnc.machine._presets import DEFAULT_MACHINE, PRESETS, load_machine, parse_machine, preset_text
@@ -37,6 +37,7 @@ from polycnc.machine._values import Form, Values
 from polycnc.on_demand import names_on_demand
 
 if TYPE_CHECKING:
+    from polycnc.machine._async_host import AsyncHost
     from polycnc.machine._describe import (
         AXIS_COLUMNS,
         axis_rows,
@@ -64,6 +65,7 @@ __all__ = [
     "AnyAxis",
     "Area",
     "Array",
+    "AsyncHost",
     "AxisConfig",
     "AxisState",
     "Clock",

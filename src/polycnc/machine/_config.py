@@ -18,6 +18,7 @@ from polycnc.machine._bounds import LARGEST_POSITION, LONGEST_BLOCK_S, SHORTEST_
 from polycnc.machine._config_axis import AnyAxis, NotNegative, Position, Rate, Share
 from polycnc.machine._config_probe import SurfaceConfig, surface_problems
 from polycnc.machine._config_programs import ProgramsConfig
+from polycnc.machine._config_tool import ToolConfig
 from polycnc.machine._toml import StrictModel, problem
 from polycnc.machine._toml_locator import KeyPath
 from polycnc.units import whole
@@ -226,24 +227,6 @@ class SpindleConfig(StrictModel):
         return self
 
 
-class ToolConfig(StrictModel):
-    """Describe one tool."""
-
-    length_mm: float = Field(default=0.0, description="Length of the tool.")
-    radius_mm: NotNegative = Field(default=0.0, description="Radius of the tool.")
-    wear_length_mm: float = Field(default=0.0, description="Added to the length.")
-    wear_radius_mm: float = Field(default=0.0, description="Added to the radius.")
-    tip: Annotated[int, Field(ge=0, le=9)] = Field(
-        default=0,
-        description="Where the tip of a turning tool lies, as FANUC controls number it; 0 and 9: its middle.",
-    )
-    x_mm: float = Field(default=0.0, description="Offset of a turning tool along X, a radius.")
-    z_mm: float = Field(default=0.0, description="Offset of a turning tool along Z.")
-    wear_x_mm: float = Field(default=0.0, description="Added to the offset along X.")
-    wear_z_mm: float = Field(default=0.0, description="Added to the offset along Z.")
-    description: str = Field(default="", description="Any text.")
-
-
 class IoConfig(StrictModel):
     """Size the I/O image and name points of it."""
 
@@ -362,6 +345,13 @@ class MachineConfig(StrictModel):
                     hint=f"the axes are {', '.join(self.axis_names)}",
                     at=(*at, name),
                 )
+
+    def _repr_html_(self) -> str:
+        """Return the axes as a table, for notebooks."""
+        from polycnc.machine._describe import AXIS_COLUMNS, axis_rows
+        from polycnc.web import html_table
+
+        return html_table(f"{self.name}: {self.description}".rstrip(": "), AXIS_COLUMNS, axis_rows(self))
 
     @property
     def axis_names(self) -> tuple[str, ...]:

@@ -54,6 +54,7 @@ class Host(Generic[D]):
         self._stopping = self._closed = False
         self._failure: BaseException | None = None
         self._thread: threading.Thread | None = None  # None: it does not run
+        self._observers: list[Callable[[], object]] = []
 
     # ------------------------------------------------------------------ from any thread
 
@@ -61,6 +62,11 @@ class Host(Generic[D]):
     def status(self) -> Any:
         """Return the status of the device that was published last, all of one cycle."""
         return self._status
+
+    @property
+    def running(self) -> bool:
+        """Tell whether the owner lets time pass."""
+        return self._thread is not None
 
     @property
     def failure(self) -> BaseException | None:
@@ -133,6 +139,17 @@ class Host(Generic[D]):
                     self._refuse()
                     self._changed.wait(min(left_s, _LONGEST_WAIT_S))
 
+    def observe(self, told: Callable[[], object]) -> Callable[[], None]:
+        """Call `told` in the owner's thread after each published status and at its end; return what ends that."""
+        with self._changed:
+            self._observers = [*self._observers, told]
+
+        def end() -> None:
+            with self._changed:
+                self._observers = [each for each in self._observers if each is not told]
+
+        return end
+
     def stop(self) -> None:
         """End the thread after the cycle that it is in; what was posted before is carried out.
 
@@ -193,6 +210,7 @@ class Host(Generic[D]):
         for _, future in left if failure is not None else ():
             if future.set_running_or_notify_cancel():
                 future.set_exception(_failed(failure))
+        self._tell()
 
     def _carry_out(self) -> bool:
         """Do what was posted and publish; return whether there is anything to be done later."""
@@ -238,6 +256,11 @@ class Host(Generic[D]):
             self._status = status
             self._published += 1
             self._changed.notify_all()
+        self._tell()
+
+    def _tell(self) -> None:
+        for told in self._observers:
+            told()
 
 
 def _failed(failure: BaseException | None) -> HostError:

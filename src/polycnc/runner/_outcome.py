@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from html import escape
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -17,10 +16,11 @@ from polycnc.nc import ProgramText
 from polycnc.runner._blocks import Execution
 from polycnc.runner._operations import Operation
 from polycnc.runner._run_events import RunEvent
+from polycnc.runner._trace_tables import array_of, arrow_of, columns_of, pandas_of
 
 if TYPE_CHECKING:
-    from polycnc.runner._machining import Collision, Machined
-    from polycnc.stock import Stock
+    from polycnc.runner._machined import Collision, Machined
+    from polycnc.stock import Stock, Turned, Voxels
 
 Floats = npt.NDArray[np.float64]
 
@@ -91,12 +91,42 @@ class Trace:
 
     def _repr_html_(self) -> str:
         """Return the extents of each axis as a table, for notebooks."""
+        from polycnc.web import html_table
+
         lows, highs = (self.setpoint.min(axis=0), self.setpoint.max(axis=0)) if len(self) else ((), ())
         rows = [
             (f"{axis} ({unit})", f"{low:,.3f}", f"{high:,.3f}")
             for axis, unit, low, high in zip(self.axes, self.units, lows, highs, strict=False)
         ]
         return html_table(repr(self)[1:-1], ("axis", "lowest", "highest"), rows)
+
+    def columns(self) -> dict[str, npt.NDArray[Any]]:
+        """Return the columns of a trace file by name, and `rapid` before `program`."""
+        return columns_of(self)
+
+    def __array__(self, dtype: npt.DTypeLike | None = None, copy: bool | None = None) -> npt.NDArray[Any]:
+        """Return the columns that are numbers, side by side: what a trace file holds but for `program`."""
+        return array_of(self, dtype, copy)
+
+    def to_arrow(self) -> Any:
+        """Return the columns as a table of pyarrow.
+
+        Raises:
+            UsageError: pyarrow is not installed.
+        """
+        return arrow_of(self)
+
+    def to_pandas(self) -> Any:
+        """Return the columns as a data frame of pandas.
+
+        Raises:
+            UsageError: pandas is not installed.
+        """
+        return pandas_of(self)
+
+    def __arrow_c_stream__(self, requested_schema: object | None = None) -> object:
+        """Return the table for whatever reads Arrow's C stream (polars, DuckDB)."""
+        return self.to_arrow().__arrow_c_stream__(requested_schema)
 
 
 @dataclass(frozen=True, repr=False)
@@ -153,7 +183,7 @@ class RunOutcome:
         return not self.alarms
 
     @property
-    def stock(self) -> Stock | None:
+    def stock(self) -> Stock | Turned | Voxels | None:
         """What is left of the body that was cut, with `stock`."""
         return None if self.machined is None else self.machined.stock
 
@@ -240,13 +270,6 @@ class RunOutcome:
             **({"variables": self.variables} if self.variables else {}),
             **({} if self.machined is None else {"stock": self.machined.as_dict()}),
         }
-
-
-def html_table(caption: str, header: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
-    """Return a small table as HTML."""
-    head = "".join(f"<th>{escape(cell)}</th>" for cell in header) if any(header) else ""
-    body = "".join("<tr>" + "".join(f"<td>{escape(cell)}</td>" for cell in row) + "</tr>" for row in rows)
-    return f"<table><caption>{escape(caption)}</caption><tr>{head}</tr>{body}</table>"
 
 
 def counted(number: int, thing: str) -> str:

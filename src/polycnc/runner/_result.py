@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from polycnc.errors import UsageError
-from polycnc.runner._outcome import RunOutcome, Trace, html_table, time_text
+from polycnc.runner._outcome import RunOutcome, Trace, time_text
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -19,6 +19,8 @@ class RunResult(RunOutcome):
 
     def _repr_html_(self) -> str:
         """Return times, axes and what went wrong as a table, for notebooks."""
+        from polycnc.web import html_table
+
         rows = [
             ("cutting", time_text(self.cutting_time_s), f"{self.cutting_path_mm:,.3f} mm"),
             ("rapid", time_text(self.rapid_time_s), f"{self.rapid_path_mm:,.3f} mm"),

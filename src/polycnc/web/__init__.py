@@ -1,6 +1,8 @@
 """Pages for a browser: JavaScript modules that pages share, libraries as npm brings them, and one file out of all."""
 
 from polycnc.web._page import Page, compressed
+from polycnc.web._served import served_files, served_text
+from polycnc.web._table import html_table
 from polycnc.web._vendor import Library, libraries
 
-__all__ = ["Library", "Page", "compressed", "libraries"]
+__all__ = ["Library", "Page", "compressed", "html_table", "libraries", "served_files", "served_text"]

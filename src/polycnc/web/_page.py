@@ -12,10 +12,9 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cache
 
-from polycnc.web._vendor import VENDOR, folder, libraries
+from polycnc.web._vendor import BARE, VENDOR, folder, libraries
 
 _IMPORT = re.compile(r"""\b(?:from|import)\s*["']([^"']+)["']""")
-_BARE = {"three": "three.module.min.js", "uplot": "uPlot.esm.js"}
 _OWN = "js"
 
 
@@ -81,17 +80,18 @@ def _in_order(entry: str, own: Mapping[str, str]) -> list[tuple[str, str]]:
     def take(name: str) -> None:
         if name in found:
             return
-        text = own[name] if name in own else _module_text(name)
+        text = own[name] if name in own else module_text(name)
         for wanted in _IMPORT.findall(text):
-            if wanted in _BARE or wanted.startswith("./"):
-                take(_BARE.get(wanted, wanted.removeprefix("./")))
+            if wanted in BARE or wanted.startswith("./"):
+                take(BARE.get(wanted, wanted.removeprefix("./")))
         found[name] = text
 
     take(entry)
     return [*((name, text) for name, text in found.items())]
 
 
-def _module_text(name: str) -> str:
+def module_text(name: str) -> str:
+    """Return the text of a module or library."""
     if name in {each.file for each in libraries()}:
         return _library_text(name)
     return (folder(_OWN) / name).read_text("utf-8")

@@ -8,6 +8,8 @@ from importlib import resources
 from importlib.resources.abc import Traversable
 
 VENDOR = "vendor"
+BARE = {"three": "three.module.min.js", "uplot": "uPlot.esm.js"}
+"""The files of libraries that are imported by a bare name."""
 
 
 @dataclass(frozen=True, slots=True)

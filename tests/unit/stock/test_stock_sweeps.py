@@ -10,6 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from polycnc.stock import Box, Cutting, Rows, Stock, Tool, ToolKind
+from polycnc.stock._sweep import _steps
 
 TOOLS = {
     "flat": Tool(ToolKind.FLAT, 8.0),
@@ -130,3 +131,15 @@ def test_the_surface_is_closed_and_has_the_volume_of_the_body() -> None:
     _, uses = np.unique(edges, axis=0, return_counts=True)
     assert np.all(uses % 2 == 0)
     assert surface.volume_mm3 == pytest.approx(stock.volume_mm3, rel=2e-3)
+
+
+def test_steps_count_the_cells_that_lie_within_reach_of_the_ways() -> None:
+    """A way of 8 mm with a cutter of 3 mm and no holder, twice; cells outside of the body cost nothing."""
+    grid = Stock(Box((0.0, 0.0, -5.0), (40.0, 20.0, 0.0)), 0.1).grid
+    rows = Tool(ToolKind.FLAT, 6.0).cutting_profile().rows
+    inside = np.array([[10.0, 9.0, -1.0], [18.0, 9.0, -1.0]])
+    cells = 14.0 * 6.0 / 0.01
+    assert _steps(grid, inside, rows, rows[:0]) == pytest.approx(cells / 5, rel=0.01)
+    assert _steps(grid, inside, rows, rows) == pytest.approx(2 * cells / 5, rel=0.01)
+    assert _steps(grid, inside + (100.0, 0.0, 0.0), rows, rows[:0]) == 2
+    assert _steps(grid, inside + (23.0, 0.0, 0.0), rows, rows[:0]) == pytest.approx(10 * 6 / 0.05, rel=0.01)

@@ -13,7 +13,7 @@ from polycnc.machine import MachineConfig, load_machine
 from polycnc.nc import BlockRecords, Dialect, ProgramText, dialect_for
 from polycnc.runner._blocks import execution_by_lines
 from polycnc.runner._execution import Progress
-from polycnc.runner._outcome import Trace
+from polycnc.runner._outcome import Trace, time_text
 from polycnc.runner._result import RunResult
 from polycnc.runner._run import run_program
 from polycnc.runner._settings import RunSettings, program_text
@@ -81,6 +81,22 @@ class Comparison:
         ways = self.a_from_b, self.b_from_a
         return view_of_both((self.a, self.b), ways, self.axes, self.tracks, self.track_axes)
 
+    def _repr_html_(self) -> str:
+        """Return times, lengths and greatest deviations as a table, for notebooks."""
+        from polycnc.web import html_table
+
+        rows = [
+            ("time", time_text(self.a.time_s), time_text(self.b.time_s)),
+            ("path", f"{self.a.path_mm:,.3f} mm", f"{self.b.path_mm:,.3f} mm"),
+            ("farthest from the other", *(_place(each) for each in (self.a_from_b, self.b_from_a))),
+        ]
+        if self.tools is not None and self.tools[0] != self.tools[1]:
+            rows.append(("tools", *(", ".join(f"T{tool}" for tool in tools) for tools in self.tools)))
+        if self.parts_at is not None:
+            rows.append(("one path up to", *(f"line {line}" for _, line in self.parts_at)))
+        heads = (f"{each.name} on {each.machine}".removesuffix(" on ") for each in (self.a, self.b))
+        return html_table(str(self), ("", *heads), rows)
+
     def as_dict(self) -> dict[str, Any]:
         """Return plain data for JSON."""
         parts = None
@@ -117,9 +133,13 @@ class Comparison:
         return f"{self.a.name} and {self.b.name} {verdict}: deviation {self.deviation_mm:.6f} mm"
 
 
+def _place(found: PathDeviation) -> str:
+    return f"{found.mm:.4f} mm" + (f", line {found.line}" if found.line else "")
+
+
 def compare(
     a: Side,
-    b: Side,
+    b: Side | None = None,
     machine: str | FilePath | MachineConfig | None = None,
     dialect: str | Dialect | None = None,
     *,
@@ -131,27 +151,28 @@ def compare(
     """Run two programs, or take their traces, and compare where they go and how long it takes.
 
     `a` and `b` are programs (a path, a text of several lines), traces (a file that ends with .csv, .npz or .parquet, or
-    the object) or results that hold one. `machine_b` and `dialect_b` are those of B where they differ. Distances are
-    exact between the positions too, to 0.00002 mm, and do not depend on when anything is reached. Compared are the axes
-    that both have, in machine coordinates.
+    the object) or results that hold one. `machine_b` and `dialect_b` are those of B where they differ; without `b`, A
+    is compared with itself on them. Distances are exact between the positions too, to 0.00002 mm, and do not depend on
+    when anything is reached. Compared are the axes that both have, in machine coordinates.
 
     Raises:
-        UsageError: no such file, machine or dialect; a tolerance below 0; a result without a trace; no axis in common.
+        UsageError: no such file, machine or dialect; nothing to compare with; a tolerance below 0; a result without a
+            trace; no axis in common.
     """
     if not tolerance_mm >= 0.0:
         raise UsageError(f"a tolerance of {tolerance_mm} mm", hint="Give 0 or more.")
+    if b is None:
+        _check_twice(a, differs=machine_b is not None or dialect_b is not None)
     part = None if progress is None else (lambda done: progress(0.5 * done))
     rest = None if progress is None else (lambda done: progress(0.5 + 0.5 * done))
     left = _taken(a, machine, dialect, part)
     right = _taken(
-        b, machine if machine_b is None else machine_b, dialect if dialect_b is None else dialect_b, rest
+        a if b is None else b,
+        machine if machine_b is None else machine_b,
+        dialect if dialect_b is None else dialect_b,
+        rest,
     )
-    common = [axis for axis in left.path.axes if axis in right.path.axes]
-    if not common:
-        raise UsageError(
-            f"{left.side.name} and {right.side.name} have no axis in common",
-            hint=f"Axes are {', '.join(left.path.axes)} and {', '.join(right.path.axes)}.",
-        )
+    common = _common(left, right)
     known = left.path.kinds_known and right.path.kinds_known
     one, other = _Lines(left.path, common), _Lines(right.path, common)
     a_from_b, b_from_a = one.deviation_from(other), other.deviation_from(one)
@@ -196,17 +217,47 @@ class _Taken:
     dialect: Dialect
 
 
+def _check_twice(side: Side, *, differs: bool) -> None:
+    """Refuse to compare something with itself where nothing differs, or it cannot run again."""
+    if not differs:
+        raise UsageError(
+            f"{_name(side)} has nothing to be compared with",
+            hint="Name a second file, or another machine (machine_b, --machine-b).",
+        )
+    if not _is_program(side):
+        raise UsageError(f"{_name(side)} has run already", hint="Compare its program, or name a second side.")
+
+
+def _is_program(side: Side) -> bool:
+    """Tell whether a side is a program, which can run on another machine too."""
+    if isinstance(side, str | FilePath):
+        return (isinstance(side, str) and "\n" in side) or FilePath(side).suffix.lower() not in TRACE_FORMATS
+    return isinstance(side, ProgramText)
+
+
+def _name(side: Side) -> str:
+    if isinstance(side, str):
+        return "a program" if "\n" in side else side
+    return side.name if isinstance(side, FilePath | ProgramText) else type(side).__name__
+
+
+def _common(left: _Taken, right: _Taken) -> list[str]:
+    common = [axis for axis in left.path.axes if axis in right.path.axes]
+    if not common:
+        raise UsageError(
+            f"{left.side.name} and {right.side.name} have no axis in common",
+            hint=f"Axes are {', '.join(left.path.axes)} and {', '.join(right.path.axes)}.",
+        )
+    return common
+
+
 def _taken(
     side: Side,
     machine: str | FilePath | MachineConfig | None,
     dialect: str | Dialect | None,
     progress: Progress | None,
 ) -> _Taken:
-    if (
-        isinstance(side, str | FilePath)
-        and FilePath(side).suffix.lower() in TRACE_FORMATS
-        and not (isinstance(side, str) and "\n" in side)
-    ):
+    if isinstance(side, str | FilePath) and not _is_program(side):
         return _of_trace(read_trace(side), str(side), None)
     if isinstance(side, Trace):
         return _of_trace(side, "trace", None)

@@ -19,7 +19,7 @@ from polycnc.servers.focas._control import FocasControl
 from polycnc.servers.focas._faults import FaultKind, Faults
 from polycnc.servers.focas._profile import Profile
 from polycnc.servers.focas._session import Ending, Session, State
-from polycnc.servers.machines import HostOwner, Keeper, Owner, Patience, ServedMachine, notice_loss
+from polycnc.servers.machines import HostOwner, Keeper, Owner, Patience, ServedMachine, notice_loss, peers_of
 
 PORT = 8193
 LOOPBACK = "127.0.0.1"
@@ -72,6 +72,12 @@ class FocasServer:
     def said(self) -> str:
         """Where it listens."""
         return f"{self.address}:{self.port}"
+
+    @property
+    def clients(self) -> list[str]:
+        """The addresses of the clients that are connected now."""
+        found = peers_of(each.transport for each in self._lines)
+        return sorted([*found, *(self.calls.clients if self.calls is not None else [])])
 
     async def start(self) -> None:
         """Listen.
@@ -151,7 +157,7 @@ class _Line(asyncio.Protocol):
     that only sends fills nobody's memory and keeps nobody else waiting.
     """
 
-    _transport: asyncio.Transport
+    transport: asyncio.Transport
 
     def __init__(self, server: FocasServer) -> None:
         self._server = server
@@ -162,7 +168,7 @@ class _Line(asyncio.Protocol):
 
     def connection_made(self, transport: asyncio.BaseTransport) -> None:
         assert isinstance(transport, asyncio.Transport)
-        self._transport = transport
+        self.transport = transport
         self._server.joined(self)
         notice_loss(transport)
         if self._server.crowded:
@@ -174,7 +180,7 @@ class _Line(asyncio.Protocol):
         session, calls = self._session, self._server.calls
         if self._new and calls is not None and data[:1] == MAGIC[:1]:
             self._end()
-            calls.adopt(self._transport, data)
+            calls.adopt(self.transport, data)
             return
         self._new = False
         if session.ending is None:
@@ -200,11 +206,11 @@ class _Line(asyncio.Protocol):
         else:
             self._patience.end()
         if sent:
-            self._transport.write(sent)
+            self.transport.write(sent)
         if session.ending is Ending.RESET:
             self._reset()
         elif session.ending is Ending.CLOSE:
-            self._transport.close()
+            self.transport.close()
         elif session.more:
             self._hold(True)
             asyncio.get_running_loop().call_later(session.pause_s, self._go_on)
@@ -218,12 +224,12 @@ class _Line(asyncio.Protocol):
 
     def _reset(self) -> None:
         """End with a reset, as controls do, not with the end of the stream; what was written goes out before."""
-        line: socket.socket = self._transport.get_extra_info("socket")
+        line: socket.socket = self.transport.get_extra_info("socket")
         line.setsockopt(socket.SOL_SOCKET, socket.SO_LINGER, struct.pack("ii", 1, 0))
-        if self._transport.get_write_buffer_size():
-            self._transport.close()
+        if self.transport.get_write_buffer_size():
+            self.transport.close()
         else:
-            self._transport.abort()
+            self.transport.abort()
 
     def _hold(self, waiting: bool) -> None:
         if waiting != self._waiting:
@@ -231,12 +237,12 @@ class _Line(asyncio.Protocol):
             self._read()
 
     def _read(self) -> None:
-        if self._transport.is_closing():
+        if self.transport.is_closing():
             return
         if self._waiting or self._full:
-            self._transport.pause_reading()
+            self.transport.pause_reading()
         else:
-            self._transport.resume_reading()
+            self.transport.resume_reading()
 
     def pause_writing(self) -> None:
         self._full = True
@@ -260,4 +266,4 @@ class _Line(asyncio.Protocol):
 
     def abort(self) -> None:
         """End the connection at once."""
-        self._transport.abort()
+        self.transport.abort()

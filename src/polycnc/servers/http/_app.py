@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
 
 from fastapi import FastAPI, Request, Response
@@ -17,15 +17,20 @@ from polycnc import __version__
 from polycnc.errors import PolycncError
 from polycnc.servers.http._description import describe
 from polycnc.servers.http._guard import COOKIE, Guard, TooLargeError
+from polycnc.servers.http._lease import HeldError
 from polycnc.servers.http._problem import of_error, problem
 from polycnc.servers.http._routes import Api
+from polycnc.servers.http._statuses import Statuses
 from polycnc.servers.machines import Log, ServedMachine
+from polycnc.web import served_files, served_text
 
 METHOD_NOT_ALLOWED = 405
 PAGE = Path(__file__).parent / "page"
 FILES = {
     "": ("index.html", "text/html; charset=utf-8"),
     "icon.svg": ("icon.svg", "image/svg+xml"),
+    "charts.js": ("charts.js", "text/javascript; charset=utf-8"),
+    "lease.js": ("lease.js", "text/javascript; charset=utf-8"),
     "page.css": ("page.css", "text/css; charset=utf-8"),
     "page.js": ("page.js", "text/javascript; charset=utf-8"),
     "pages.js": ("pages.js", "text/javascript; charset=utf-8"),
@@ -53,9 +58,16 @@ def make_app(
     app.include_router(Api(by_name, log).router)
     describe(app, list(by_name))
     _add_errors(app, log)
-    _add_figures(app, by_name)
-    guard = Guard(app, hosts=hosts, token=token)
+    count = _add_figures(app, by_name)
+    guard = Guard(Statuses(app, by_name), hosts=hosts, token=token, answered=count)
     _add_login(app, guard)
+
+    @app.get("/web/{file}", include_in_schema=False)
+    async def shared(file: str) -> Response:
+        if file not in served_files():
+            return problem(404, "there is nothing here", "The page is at /.")
+        kind = "text/css" if file.endswith(".css") else "text/javascript"
+        return Response(served_text(file), media_type=f"{kind}; charset=utf-8")
 
     @app.get("/{file}", include_in_schema=False)
     async def page(file: str) -> Response:
@@ -76,6 +88,10 @@ def _add_errors(app: FastAPI, log: Log) -> None:
     @app.exception_handler(PolycncError)
     async def refused(_: Request, error: PolycncError) -> Response:
         return of_error(error)
+
+    @app.exception_handler(HeldError)
+    async def held(_: Request, error: HeldError) -> Response:
+        return problem(409, error.what, error.hint, reason="held")
 
     @app.exception_handler(TooLargeError)
     async def too_large(_: Request, __: TooLargeError) -> Response:
@@ -122,7 +138,8 @@ def _methods(app: FastAPI, request: Request) -> set[str]:
     return found
 
 
-def _add_figures(app: FastAPI, machines: dict[str, ServedMachine]) -> None:
+def _add_figures(app: FastAPI, machines: dict[str, ServedMachine]) -> Callable[[int], None]:
+    """Add health and figures; return what counts an answer."""
     registry = CollectorRegistry()
     requests = Counter("polycnc_http_requests", "Requests by status.", ["status"], registry=registry)
     time_s = Gauge("polycnc_machine_time_seconds", "The time of a machine.", ["machine"], registry=registry)
@@ -132,12 +149,6 @@ def _add_figures(app: FastAPI, machines: dict[str, ServedMachine]) -> None:
         ["machine"],
         registry=registry,
     )
-
-    @app.middleware("http")
-    async def count(request: Request, call_next):  # type: ignore[no-untyped-def]
-        response = await call_next(request)
-        requests.labels(response.status_code).inc()
-        return response
 
     @app.get("/health")
     async def health() -> dict[str, str]:
@@ -152,6 +163,8 @@ def _add_figures(app: FastAPI, machines: dict[str, ServedMachine]) -> None:
             time_s.labels(each.name).set(each.served.clock.now_s)
             late_s.labels(each.name).set(each.keeper.take_lateness_s())
         return Response(generate_latest(registry), media_type="text/plain; version=0.0.4")
+
+    return lambda status: requests.labels(status).inc()
 
 
 def _add_login(app: FastAPI, guard: Guard) -> None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import hmac
 import ipaddress
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from http.cookies import CookieError, SimpleCookie
 from urllib.parse import urlsplit
 
@@ -25,10 +25,21 @@ _CONTENT = (
 
 
 class Guard:
-    """Let only those requests through that may be answered; `hosts` are names besides those of loopback."""
+    """Let only those requests through that may be answered; `hosts` are names besides those of loopback.
 
-    def __init__(self, app: ASGIApp, *, hosts: Iterable[str] = (), token: str | None = None) -> None:
+    `answered` is told the status of every answer.
+    """
+
+    def __init__(
+        self,
+        app: ASGIApp,
+        *,
+        hosts: Iterable[str] = (),
+        token: str | None = None,
+        answered: Callable[[int], object] = lambda status: None,
+    ) -> None:
         self._app = app
+        self._answered = answered
         self._hosts = frozenset(hosts) | {"localhost"}
         self._any_address = token is not None
         self._token = token
@@ -44,9 +55,19 @@ class Guard:
                 await receive()
                 await send({"type": "websocket.close", "code": 1008, "reason": refusal[1]})
             else:
+                self._answered(refusal[0])
                 await problem(*refusal)(scope, receive, send)
             return
-        await self._app(scope, _bounded(receive), _with_headers(send))
+        await self._app(scope, _bounded(receive), self._with_headers(send))
+
+    def _with_headers(self, send: Send) -> Send:
+        async def sent(message: Message) -> None:
+            if message["type"] == "http.response.start":
+                self._answered(message["status"])
+                message["headers"] = [*message.get("headers", ()), *_CONTENT]
+            await send(message)
+
+        return sent
 
     def _refusal(self, scope: Scope) -> tuple[int, str, str] | None:
         headers = scope["headers"]
@@ -56,7 +77,7 @@ class Guard:
         if names.count(b"host") != 1 or not self._knows(_header(scope, b"host")):
             return 421, "this host is not served here", "Ask by the address that the door was said to have."
         origin = _header(scope, b"origin")
-        if origin and (origin == "null" or urlsplit(origin).netloc != _header(scope, b"host")):
+        if origin and _place_of(origin) != _header(scope, b"host"):
             return 403, "a page of another origin cannot ask", "Open the page of this server."
         length = _header(scope, b"content-length")
         if length and (not length.isdecimal() or len(length) > 12 or int(length) > MOST_BODY_BYTES):
@@ -66,6 +87,8 @@ class Guard:
         return None
 
     def _knows(self, host: str) -> bool:
+        if "@" in host:  # a user has no place there
+            return False
         try:
             name = urlsplit(f"//{host}").hostname or ""
             if name in self._hosts:
@@ -94,6 +117,14 @@ def _header(scope: Scope, name: bytes) -> str:
     return next((value.decode("latin-1") for key, value in scope["headers"] if key == name), "")
 
 
+def _place_of(origin: str) -> str | None:
+    """Return host and port of an origin; None of what has none."""
+    try:
+        return urlsplit(origin).netloc or None
+    except ValueError:  # a bracket that is not closed
+        return None
+
+
 def _bounded(receive: Receive) -> Receive:
     """Take no more of a body than is allowed, whatever its header says."""
     taken = 0
@@ -112,12 +143,3 @@ def _bounded(receive: Receive) -> Receive:
 
 class TooLargeError(Exception):
     """A body without a length that grows too large."""
-
-
-def _with_headers(send: Send) -> Send:
-    async def sent(message: Message) -> None:
-        if message["type"] == "http.response.start":
-            message["headers"] = [*message.get("headers", ()), *_CONTENT]
-        await send(message)
-
-    return sent

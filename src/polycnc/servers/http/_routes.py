@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from typing import Annotated, Any
 
-from fastapi import APIRouter, Path, Request, Response
+from fastapi import APIRouter, Depends, Path, Request, Response
 from pydantic import BaseModel
 from starlette.websockets import WebSocket
 
@@ -15,6 +15,7 @@ from polycnc.servers.http._clock import ClockRoutes
 from polycnc.servers.http._data import DataRoutes
 from polycnc.servers.http._documents import as_json, status_json
 from polycnc.servers.http._found import JSON, ONE, REFUSALS, Found, answer, body
+from polycnc.servers.http._lease import KeyShown, LeaseRoutes, Leases, is_for_all
 from polycnc.servers.http._path import PathRoutes
 from polycnc.servers.http._snapshots import SnapshotRoutes
 from polycnc.servers.http._stream import Stream, rate_of
@@ -33,6 +34,14 @@ class MachineShown(BaseModel):
     kind: str
 
 
+class DoorShown(BaseModel):
+    """A door to a machine: where it is, and the addresses of the clients that are connected now."""
+
+    door: str
+    address: str
+    clients: list[str]
+
+
 class CommandShown(BaseModel):
     """A command: what it does, the modes that it needs (empty: any), and the schema of its body."""
 
@@ -47,7 +56,10 @@ class Api:
 
     def __init__(self, machines: Mapping[str, ServedMachine], log: Log) -> None:
         self._found = found = Found(machines, log)
-        self.router = router = APIRouter(prefix="/api/machines", responses=REFUSALS)
+        self._leases = leases = Leases(machines)
+        self.router = router = APIRouter(
+            prefix="/api/machines", responses=REFUSALS, dependencies=[Depends(leases.check)]
+        )
         get = router.get
         get("", summary="The machines.")(self.machines)
         get(f"{ONE}/status", summary="All that a machine shows at its present cycle.", response_class=Response,
@@ -75,11 +87,18 @@ class Api:
         ClockRoutes(found, router)
         SnapshotRoutes(found, router)
         PathRoutes(found, router)
+        get(f"{ONE}/connections", summary="The doors, and who is connected.")(self.connections)
+        LeaseRoutes(found, leases, router)
         router.websocket(f"{ONE}/stream")(self.stream)
 
     async def machines(self) -> list[MachineShown]:
         """Return names and kinds."""
         return [MachineShown(name=each.name, kind=each.kind) for each in self._found.machines.values()]
+
+    async def connections(self, machine: str) -> list[DoorShown]:
+        """Return the doors to a machine with their clients, those that machines share with all of theirs."""
+        doors = self._found.machine(machine).doors
+        return [DoorShown(door=name, address=door.said, clients=door.clients) for name, door in doors.items()]
 
     async def status(self, machine: str) -> Response:
         """Return the status."""
@@ -134,10 +153,12 @@ class Api:
             for row in COMMANDS.values()
         ]
 
-    async def command(self, machine: str, request: Request) -> Response:
+    async def command(self, machine: str, request: Request, key: KeyShown = "") -> Response:
         """Carry out a command; the answer is the status after it."""
         found = self._found.machine(machine)
         asked = await json_object(request)
+        if not is_for_all(asked):
+            self._leases.of(machine).check(key)
 
         def done() -> bytes:
             carry_out(found, asked)
@@ -153,4 +174,4 @@ class Api:
         if found is None:
             await socket.close(1008, "there is no such machine")
             return
-        await Stream(socket, found, rate_of(socket.query_params.get("rate"))).run()
+        await Stream(socket, found, rate_of(socket.query_params.get("rate")), self._leases.of(machine)).run()

@@ -12,6 +12,7 @@ from starlette.websockets import WebSocket, WebSocketDisconnect
 from polycnc.errors import PolycncError
 from polycnc.servers.commands import carry_out
 from polycnc.servers.http._documents import inventory_parts, status_json
+from polycnc.servers.http._lease import Lease
 from polycnc.servers.machines import ServedMachine
 
 LEAST_RATE, MOST_RATE, USUAL_RATE = 0.1, 50.0, 10.0
@@ -30,13 +31,15 @@ def rate_of(text: str | None) -> float:
 
 class Stream:
     """One viewer. It may hold jog keys: `{"jog": {"axis": "X", "direction": 1}}`, repeated while the key is held.
+    Where somebody holds the machine, `"key": "..."` beside it is the holder's.
 
     A key that is not repeated for half a second, or whose connection is lost, is released.
     """
 
-    def __init__(self, socket: WebSocket, machine: ServedMachine, rate: float) -> None:
+    def __init__(self, socket: WebSocket, machine: ServedMachine, rate: float, lease: Lease) -> None:
         self._socket = socket
         self._machine = machine
+        self._lease = lease
         self._beat_s = 1.0 / rate
         self._known: dict[str, int] = {}
         self._held: dict[str, asyncio.TimerHandle] = {}
@@ -64,9 +67,8 @@ class Stream:
     def _message(self) -> str:
         status = status_json(self._machine).decode()
         parts = inventory_parts(self._machine, self._known)
-        return (
-            f'{{"status":{status},"inventory":{json.dumps(parts)},"rate":{self._machine.keeper.pace.rate!r}}}'
-        )
+        rate, lease = self._machine.keeper.pace.rate, self._lease.shown().model_dump_json()
+        return f'{{"status":{status},"inventory":{json.dumps(parts)},"rate":{rate!r},"lease":{lease}}}'
 
     async def _read(self) -> None:
         while True:
@@ -79,7 +81,8 @@ class Stream:
 
     def _jog(self, text: str) -> dict[str, Any] | None:
         try:
-            jog = json.loads(text)["jog"]
+            message = json.loads(text)
+            jog, key = message["jog"], str(message.get("key", ""))[:64]
             axis, direction, rapid = jog["axis"], jog.get("direction"), jog.get("rapid", False)
         except (ValueError, KeyError, TypeError, AttributeError, RecursionError):
             return {
@@ -90,12 +93,17 @@ class Stream:
         if not direction:
             self._release(axis)
             return None
+        try:
+            self._lease.check(key)
+        except PolycncError as error:  # also while the key is held: somebody has taken the machine over
+            self._release(axis)
+            return _refused(error)
         if axis not in self._held:
             asked = {"command": "jog", "axis": axis, "direction": direction, "rapid": rapid}
             try:
                 carry_out(self._machine, asked)
             except PolycncError as error:
-                return {"refused": {"detail": error.what, "hint": error.hint}}
+                return _refused(error)
         else:
             self._held[axis].cancel()
         self._held[axis] = asyncio.get_running_loop().call_later(DEAD_MAN_S, self._release, axis)
@@ -110,3 +118,7 @@ class Stream:
     def _let_go(self, axis: str) -> None:
         with contextlib.suppress(PolycncError):
             carry_out(self._machine, {"command": "jog", "axis": axis})
+
+
+def _refused(error: PolycncError) -> dict[str, Any]:
+    return {"refused": {"detail": error.what, "hint": error.hint}}

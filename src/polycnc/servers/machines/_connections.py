@@ -5,7 +5,7 @@ from __future__ import annotations
 import asyncio
 import errno
 import socket
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from typing import Any
 
 VANISHED_AFTER_S = 60
@@ -28,6 +28,12 @@ def notice_loss(transport: asyncio.BaseTransport) -> None:
     for name, value in _OPTIONS:  # what the system knows of them
         if (option := getattr(socket, name, None)) is not None:
             line.setsockopt(socket.IPPROTO_TCP, option, value)
+
+
+def peers_of(transports: Iterable[asyncio.BaseTransport | None]) -> list[str]:
+    """Return the addresses of the clients of these connections, as users write them."""
+    names = (None if each is None else each.get_extra_info("peername") for each in transports)
+    return sorted(f"{name[0]}:{name[1]}" if isinstance(name, tuple) else "local" for name in names if name)
 
 
 class Patience:

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import asyncio
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
-from typing import Any, TypeVar
+from typing import Any, Protocol, TypeVar
 
 from polycnc.cnc import Control
 from polycnc.errors import PolycncError
@@ -27,6 +27,22 @@ class Treatment:
 
 
 AS_USUAL = Treatment()
+
+
+def _as_usual(_: str) -> Treatment:
+    return AS_USUAL
+
+
+class OpenDoor(Protocol):
+    """A door to a machine, as others see it."""
+
+    @property
+    def said(self) -> str:
+        """Where it is, as users write it: a URL or host:port; known after `start`."""
+
+    @property
+    def clients(self) -> list[str]:
+        """The addresses of the clients that are connected now."""
 
 
 class MachineError(PolycncError):
@@ -53,8 +69,11 @@ class ServedMachine:
     """Switches the device off and keeps its memory."""
     parameters: Values = NO_PARAMETERS
     variables: Values = NO_VARIABLES
-    treat: Callable[[str], Treatment] = lambda door: AS_USUAL
+    treat: Callable[[str], Treatment] = _as_usual
     """A door tells its name with every request, and does with it what is said."""
+
+    doors: dict[str, OpenDoor] = field(default_factory=dict)
+    """The doors to it by name, those that it shares with others among them."""
 
     def __post_init__(self) -> None:
         if self.programs is None and self.find_control is not None:
@@ -64,6 +83,11 @@ class ServedMachine:
     def control(self) -> Control | None:
         """The control within the device; None for a device without one."""
         return None if self.find_control is None else self.find_control()
+
+    @property
+    def is_usual(self) -> bool:
+        """Whether its doors treat every request as usual."""
+        return self.treat is _as_usual
 
     async def ask(self, question: Callable[[], R]) -> R:
         """Ask between two cycles, after what is due, and return the answer.
@@ -95,3 +119,18 @@ class ServedMachine:
         """Let no more time pass and switch off."""
         self.keeper.close()
         self.end()
+
+
+def machines_of_path(machines: Iterable[ServedMachine], path: str) -> list[ServedMachine]:
+    """Return the machines that a path of a URL names; all, if it names none."""
+    names, every = set(path.split("/")), list(machines)
+    return [each for each in every if each.name in names] or every
+
+
+def treatment_of(machines: Iterable[ServedMachine], door: str) -> Treatment:
+    """Count a request of a door at these machines, after what is due, and say how it is to be treated."""
+    found: list[Treatment] = []
+    for machine in machines:
+        if not machine.is_usual:
+            machine.keeper.submit(lambda machine=machine: machine.treat(door), found.append)  # type: ignore[misc]
+    return Treatment(any(each.drop for each in found), max((each.delay_s for each in found), default=0.0))

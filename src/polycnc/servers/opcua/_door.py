@@ -16,7 +16,7 @@ from asyncua.server.internal_session import InternalSession
 
 from polycnc import __version__
 from polycnc.errors import PolycncError, UsageError
-from polycnc.servers.machines import LOOPBACK, ServedMachine, Treatment, Wanted
+from polycnc.servers.machines import LOOPBACK, ServedMachine, Treatment, Wanted, peers_of
 from polycnc.servers.opcua import _cnc as cnc
 from polycnc.servers.opcua import _machine_tool as tool
 from polycnc.servers.opcua._alarms import AlarmEvents
@@ -70,6 +70,12 @@ class OpcuaDoor:
         """The URL of the endpoint."""
         address = self._wanted.address
         return f"opc.tcp://{f'[{address}]' if ':' in address else address}:{self._port}"
+
+    @property
+    def clients(self) -> list[str]:
+        """The addresses of the clients that are connected now."""
+        listener = None if self._server is None else self._server.bserver
+        return [] if listener is None else peers_of(each.transport for each in listener.clients)
 
     async def start(self) -> None:
         """Build the address space and listen.

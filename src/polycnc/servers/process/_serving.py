@@ -87,6 +87,8 @@ class Serving:
             door = kind.open_door(machines, at)
             await door.start()
             self.doors.append((kind.name, door))
+            for machine in machines:
+                machine.doors[kind.name] = door
             self.served_by.append(machines)
             self.log.write("open", door=kind.name, address=door.said)
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import asyncio
 
 from polycnc.errors import UsageError
-from polycnc.servers.machines import LOOPBACK, ServedMachine
+from polycnc.servers.machines import LOOPBACK, ServedMachine, notice_loss, peers_of, treatment_of
 from polycnc.servers.mtconnect import VERSIONS, model_of
 from polycnc.servers.plant import see
 from polycnc.servers.shdr._lines import Adapter, Session
@@ -38,6 +38,11 @@ class ShdrServer:
     def said(self) -> str:
         """Where it is."""
         return f"{self._address}:{self._port}"
+
+    @property
+    def clients(self) -> list[str]:
+        """The addresses of the clients that are connected now."""
+        return peers_of(writer.transport for writer in self._agents)
 
     async def start(self) -> None:
         """Listen.
@@ -97,10 +102,16 @@ class ShdrServer:
         if len(self._agents) >= _MOST_AGENTS:
             writer.close()
             return
+        notice_loss(writer.transport)
         session = Session()
         try:
+            if not await self._treated(writer):
+                return
             self._machine.keeper.submit(lambda: self._begin(writer), lambda _: None)
             while data := await reader.read(_PIECE_BYTES):
+                for _ in range(data.count(b"\n")):
+                    if not await self._treated(writer):
+                        return
                 self._machine.keeper.submit(self._look, lambda _: None)
                 self._send(writer, session.receive(data))
         except (OSError, asyncio.CancelledError):
@@ -108,3 +119,12 @@ class ShdrServer:
         finally:
             self._agents.discard(writer)
             writer.close()
+
+    async def _treated(self, writer: asyncio.StreamWriter) -> bool:
+        """Count a connection or a command, and do what a scenario wants with it; tell whether it is answered."""
+        treatment = treatment_of([self._machine], "shdr")
+        if treatment.drop:
+            writer.transport.abort()
+        elif treatment.delay_s:
+            await asyncio.sleep(treatment.delay_s)
+        return not treatment.drop

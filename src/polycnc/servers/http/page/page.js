@@ -1,11 +1,13 @@
 // The operator's page: one screen that shows what the stream sends and asks the commands of REST.
 import { TEXTS } from "/texts.js";
 import { Pages } from "/pages.js";
+import { Charts } from "/charts.js";
+import { Lease } from "/lease.js";
 import { Path } from "/path.js";
 
 const SWITCHES = ["single_block", "dry_run", "optional_stop", "block_delete", "machine_lock"];
 const RATES = [0, 0.1, 0.5, 1, 2, 5, 10, 50];
-const RATE = 20, STALE_MS = 900, AGAIN_MS = 1000, BEAT_MS = 200, MOST_LINES = 2000;
+const RATE = 20, STALE_MS = 900, AGAIN_MS = 1000, BEAT_MS = 200, MOST_LINES = 2000, REDRAW_MS = 300;
 const $ = (id) => document.getElementById(id);
 const make = (tag, attributes = {}, ...inside) => {
   const made = document.createElement(tag);
@@ -46,14 +48,14 @@ customElements.define("cnc-axes", Axes);
 
 const state = { machine: "", status: null, socket: null, seen: 0, lines: "", held: new Map(), stamp: 0, chosen: 0, breakpoints: [] };
 let pages = null;
-const path = new Path($("path"));
+const path = new Path($("path"), $("views")), charts = new Charts($("charts")), lease = new Lease(ask);
 const url = (rest) => `/api/machines/${encodeURIComponent(state.machine)}/${rest}`;
 
 function say(text) { put($("said"), text); clearTimeout(say.timer); say.timer = setTimeout(() => put($("said"), ""), 6000); }
 
 async function ask(rest, options) {
   try {
-    const answer = await fetch(url(rest), options);
+    const answer = await fetch(url(rest), { ...options, headers: { "polycnc-key": lease.key } });
     if (!answer.ok) {
       const problem = await answer.json();
       say(`${problem.detail}. ${problem.hint}`);
@@ -81,8 +83,8 @@ function show(status) {
   $("run").dataset.state = channel.run_state;
   put($("run"), channel.run_state.replaceAll("_", " "));
   document.querySelector("cnc-axes").show(status.axes);
-  const { X, Y } = status.axes;
-  if (X && Y) path.add(X.machine, Y.machine);
+  path.at(status.axes, channel.block?.program === state.lines ? channel.block.line : 0, ["active", "hold", "stopped"].includes(channel.run_state));
+  charts.add(status, channel.feed);
   const alarms = status.alarms.map((alarm) => `${alarm.number} ${alarm.text}`).join("\n");
   if ($("alarms").dataset.said !== alarms) {
     $("alarms").dataset.said = alarms;
@@ -131,6 +133,7 @@ function showLine(channel) {
 async function loadLines(name) {
   state.lines = name;
   $("lines").replaceChildren();
+  drawPath();
   if (!name) return;
   const answer = await fetch(url(`programs/${encodeURIComponent(name)}`)).catch(() => null);
   if (!answer?.ok || state.lines !== name) return;
@@ -138,6 +141,19 @@ async function loadLines(name) {
   $("lines").replaceChildren(...lines.map((line, index) => make("li", { onclick: () => choose(index + 1) }, line)));
   state.chosen = 0;
   showBreakpoints();
+}
+
+// Where the selected program goes, asked anew when it, a tool or an offset has changed.
+function drawPath() {
+  clearTimeout(drawPath.timer);
+  drawPath.timer = setTimeout(async () => {
+    const name = state.lines;
+    if (!name) { path.show(null); return; }
+    const answer = await fetch(url(`path?program=${encodeURIComponent(name)}`)).catch(() => null);
+    if (state.lines !== name || !answer) return;
+    const told = await answer.json();
+    path.show(answer.ok ? told : null, answer.ok ? told.errors[0] ?? "" : told.detail);
+  }, REDRAW_MS);
 }
 
 function choose(line) {
@@ -161,6 +177,7 @@ function toggleBreakpoint() {
 function showInventory(parts) {
   pages?.inventory(parts);
   if (parts.breakpoints) { state.breakpoints = parts.breakpoints; showBreakpoints(); }
+  if (parts.tools || parts.offsets) drawPath();
   if (!parts.programs) return;
   const chosen = $("names").value;
   $("names").replaceChildren(...parts.programs.map((entry) => make("option", { value: entry.name }, `${entry.name} ${entry.comment}`)));
@@ -182,6 +199,7 @@ function connect() {
     put($("connection"), TEXTS.connected);
     show(message.status);
     if (document.activeElement !== $("rate")) $("rate").value = String(message.rate);
+    lease.show(message.lease);
     showInventory(message.inventory);
   };
   socket.onclose = () => { if (state.socket === socket) { releaseAll(); setTimeout(connect, AGAIN_MS); } };
@@ -197,7 +215,7 @@ setInterval(() => {
 // ---------------------------------------------------------------- by hand
 
 function send(axis, direction, rapid) {
-  if (state.socket?.readyState === WebSocket.OPEN) state.socket.send(JSON.stringify({ jog: { axis, direction, rapid } }));
+  if (state.socket?.readyState === WebSocket.OPEN) state.socket.send(JSON.stringify({ jog: { axis, direction, rapid }, key: lease.key }));
 }
 function press(axis, direction) {
   if (!state.status) return;
@@ -284,7 +302,7 @@ function build(axes) {
     const file = event.dataTransfer.files[0];
     if (file) { name.value = file.name.replace(/\.[^.]*$/, ""); text.value = await file.text(); }
   });
-  pages = new Pages($("store"), programs, { make, ask, command, say });
+  pages = new Pages($("store"), programs, { make, ask, command, say, lease });
   pages.status = state.status;
   $("path").setAttribute("aria-label", TEXTS.path);
   $("steps").replaceChildren(
@@ -298,14 +316,14 @@ function build(axes) {
   const rate = make("select", { id: "rate", "aria-label": TEXTS.rate }, ...RATES.map((value) => make("option", { value: String(value) }, value ? `${value} ×` : TEXTS.frozen)));
   rate.onchange = () => ask("clock", { method: "POST", body: JSON.stringify({ rate: Number(rate.value) }) });
   const far = make("button", { id: "far", "aria-pressed": "false", onclick: () => far.setAttribute("aria-pressed", document.body.classList.toggle("far")) }, TEXTS.far);
-  $("tools").replaceChildren(rate, far);
+  $("tools").replaceChildren(rate, far, lease.button);
 }
 
 async function begin() {
   const machines = await (await fetch("/api/machines")).json();
   $("machine").replaceChildren(...machines.map((each) => make("option", { value: each.name }, each.name)));
   state.machine = machines[0].name;
-  $("machine").onchange = (event) => { releaseAll(); state.machine = event.target.value; path.clear(); open(); };
+  $("machine").onchange = (event) => { releaseAll(); state.machine = event.target.value; path.clear(); charts.clear(); open(); };
   await open();
 }
 async function open() {

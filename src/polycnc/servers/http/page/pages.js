@@ -3,7 +3,7 @@ import { TEXTS } from "/texts.js";
 
 const TOOL = ["length_mm", "radius_mm", "wear_length_mm", "wear_radius_mm"];
 const OFFSETS = ["EXT", "G54", "G55", "G56", "G57", "G58", "G59"];
-const MOST_ROWS = 60, WATCH_MS = 500;
+const MOST_ROWS = 60, WATCH_MS = 500, MOST_SHOWN = 20;
 
 export class Pages {
   constructor(place, programs, tools) {
@@ -11,7 +11,7 @@ export class Pages {
     this.parts = {};
     this.status = null;
     this.panels = { programs };
-    for (const name of ["tools", "offsets", "parameters", "variables", "alarms", "snapshots"]) {
+    for (const name of ["tools", "offsets", "parameters", "variables", "alarms", "snapshots", "connections"]) {
       this.panels[name] = this.make("div", { id: `page-${name}`, role: "tabpanel", "aria-labelledby": `tab-${name}` });
     }
     this.tabs = Object.keys(this.panels).map((name) => this.make("button",
@@ -31,7 +31,8 @@ export class Pages {
     for (const tab of this.tabs) tab.setAttribute("aria-selected", tab.id === `tab-${name}`);
     clearInterval(this.watching);
     this[`show_${name}`]?.();
-    if (name === "variables") this.watching = setInterval(() => this.watch(), WATCH_MS);
+    const again = { variables: () => this.watch(), connections: () => this.count() }[name];
+    if (again) this.watching = setInterval(again, WATCH_MS);
   }
 
   inventory(parts) {
@@ -147,6 +148,24 @@ export class Pages {
     const past = [...(this.parts.alarms ?? [])].reverse().map((alarm) => this.row(alarm.number < 0 ? "" : String(alarm.number), alarm.text, "", alarm.time ?? ""));
     this.panels.alarms.replaceChildren(this.table([TEXTS.number, TEXTS.text, TEXTS.to_do, TEXTS.time], [...now, ...past]),
       this.button("clear-alarms", TEXTS.forget_all, () => this.command("clear_alarm_history")));
+  }
+
+  // -------------------------------------------------------------- who is connected
+
+  show_connections() {
+    const name = this.make("input", { id: "operator", value: this.lease.operator, maxlength: "40", "aria-label": TEXTS.your_name });
+    name.addEventListener("change", () => { this.lease.operator = name.value; if (this.lease.mine) this.lease.hold(true); });
+    this.doors = this.make("div", {});
+    this.panels.connections.replaceChildren(this.make("label", {}, TEXTS.your_name, " ", name), this.doors);
+    this.count();
+  }
+
+  async count() {
+    if (document.hidden) return;
+    const answer = await this.ask("connections");
+    if (!answer) { clearInterval(this.watching); return; }
+    const rows = (await answer.json()).map((each) => this.row(each.door, each.address, String(each.clients.length), each.clients.slice(0, MOST_SHOWN).join(", ")));
+    this.doors.replaceChildren(this.table([TEXTS.door, TEXTS.address, TEXTS.number, TEXTS.clients], rows));
   }
 
   async show_snapshots() {

@@ -1,0 +1,38 @@
+"""The question that is asked most, without the way through the router: the status of a machine."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from starlette.types import ASGIApp, Receive, Scope, Send
+
+from polycnc.errors import PolycncError
+from polycnc.servers.http._documents import status_json
+from polycnc.servers.http._problem import of_error
+from polycnc.servers.machines import ServedMachine
+
+
+class Statuses:
+    """Answer `GET .../status` of the machines that there are; everything else is handed on.
+
+    The answer is that of the route, which describes it, and answers for a machine that there is not.
+    """
+
+    def __init__(self, app: ASGIApp, machines: Mapping[str, ServedMachine]) -> None:
+        self._app = app
+        self._by_path = {f"/api/machines/{name}/status": machine for name, machine in machines.items()}
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        """Answer, or hand on."""
+        machine = self._by_path.get(scope["path"]) if scope["type"] == "http" else None
+        if machine is None or scope["method"] != "GET":
+            await self._app(scope, receive, send)
+            return
+        try:
+            shown = await machine.ask(lambda: status_json(machine))
+        except PolycncError as error:
+            await of_error(error)(scope, receive, send)
+            return
+        head = [(b"content-length", str(len(shown)).encode()), (b"content-type", b"application/json")]
+        await send({"type": "http.response.start", "status": 200, "headers": head})
+        await send({"type": "http.response.body", "body": shown})
