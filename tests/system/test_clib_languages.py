@@ -24,9 +24,15 @@ EXAMPLES = Path(__file__).parents[2] / "examples"
 KINDS = ("apci", "fanuc", "imc")
 
 
-def _run(*command: str | Path, cwd: Path | None = None, **more: str) -> str:
+def _run(*command: str | Path, cwd: Path | None = None, at: dict[str, str] | None = None) -> str:
     ran = subprocess.run(
-        command, cwd=cwd, env=environment(**more), capture_output=True, text=True, timeout=120, check=False
+        command,
+        cwd=cwd,
+        env=environment(**(at or {})),
+        capture_output=True,
+        text=True,
+        timeout=120,
+        check=False,
     )
     assert ran.returncode == 0, ran.stdout + ran.stderr
     return ran.stdout
@@ -60,7 +66,7 @@ def test_a_program_of_pascal_moves_an_axis(tmp_path: Path, doors: dict[str, Door
     _need("fpc", "fp-compiler")
     folder = built("apci")
     program = _pascal(EXAMPLES / "pascal" / "apci_jog.pas", folder, tmp_path)
-    assert _run(program, **_at(doors["apci"], folder)) == "init 0, board 4, 3 axes\nat 12.500\n"
+    assert _run(program, at=_at(doors["apci"], folder)) == "init 0, board 4, 3 axes\nat 12.500\n"
 
 
 @pytest.mark.long
@@ -68,14 +74,14 @@ def test_a_program_of_csharp_says_what_one_of_c_says(tmp_path: Path, doors: dict
     _need("mcs", "mono-mcs")
     folder, made = built("fanuc"), tmp_path / "client.exe"
     _run("mcs", f"-out:{made}", EXAMPLES / "csharp" / "FanucMacro.cs", folder / "fwlib32.cs")
-    assert _run("mono", made, **_at(doors["fanuc"], folder)) == facade_says()
+    assert _run("mono", made, at=_at(doors["fanuc"], folder)) == facade_says()
 
 
 def test_a_program_that_loads_the_library_by_name(tmp_path: Path, doors: dict[str, Door]) -> None:
     folder, made = built("imc"), tmp_path / "client"
     source = EXAMPLES / "c" / "imc_by_name.c"
     _run("gcc", "-std=c11", "-Wall", "-Wextra", "-Werror", "-I", folder, "-o", made, source, "-ldl")
-    assert _run(made, **_at(doors["imc"], folder)) == "found 1\nopen 0\naxis 1 0: 0\nclose 0\n"
+    assert _run(made, at=_at(doors["imc"], folder)) == "found 1\nopen 0\naxis 1 0: 0\nclose 0\n"
     assert "IMCnet" not in subprocess.run(["ldd", made], capture_output=True, text=True, check=True).stdout
 
 

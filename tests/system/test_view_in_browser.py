@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import zipfile
 from collections.abc import Iterator
 from itertools import pairwise
 from pathlib import Path
@@ -11,6 +12,7 @@ import numpy as np
 import pytest
 
 import polycnc
+from polycnc.stock import Stock, read_stl
 from support.browser import browser
 from support.command import polycnc as command
 
@@ -295,9 +297,26 @@ def test_the_slider_cuts_back_and_forth(chromium: Any, tmp_path: Path) -> None:
         assert np.array_equal(seen.setdefault(share, shown), shown)
     assert seen[0.3][0] < seen[0.7][0] < seen[1.0][0]
     result = polycnc.run(EXAMPLES / "bracket.nc", "mill3", stock="auto", resolution_mm=0.5)
-    assert result.stock is not None
+    assert isinstance(result.stock, Stock)
     heights = result.stock.heights - result.stock.grid.bottom
     assert seen[1.0][1::2] == pytest.approx(heights.ravel(), abs=0.01)
+    for how in ("stl", "3mf"):
+        view.page.evaluate(
+            "s => { const e = document.getElementById('slider'); e.value = e.max; e.oninput(); }"
+        )
+        with view.page.expect_download() as saved:
+            view.page.locator("#save").select_option(how)
+        assert saved.value.suggested_filename == f"bracket.{how}"
+        saved.value.save_as(tmp_path / f"part.{how}")
+    assert read_stl(tmp_path / "part.stl").volume_mm3 == pytest.approx(
+        result.stock.mesh().volume_mm3, rel=1e-3
+    )
+    with zipfile.ZipFile(tmp_path / "part.3mf") as archive:
+        assert archive.testzip() is None
+        model = archive.read("3D/3dmodel.model")
+    assert model.count(b"<triangle ") == int(
+        np.frombuffer((tmp_path / "part.stl").read_bytes(), "<u4", 1, 80)[0]
+    )
     view.page.locator("#stock").select_option("whole")
     assert view.page.evaluate(field)[0] == 0
     view.page.locator("#section").select_option("1")

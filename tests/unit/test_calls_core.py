@@ -20,6 +20,7 @@ from polycnc.controllers.fanuc.clib import FWLIB
 from polycnc.controllers.library.clib import Call, Slot, Way, alike, length_in
 from polycnc.errors import UsageError
 from polycnc.servers.calls import LIBRARIES, CallClient, Caller, Trace, replay
+from support.often import share
 
 NUMBERS = {each.function.name: each.number for each in FWLIB.calls}
 WELCOME = b"PNCCALL1" + struct.pack("<i", 0)
@@ -236,7 +237,7 @@ def test_what_is_written_several_times_lies_alike_in_both_packings() -> None:
                 assert alike(packed.element, slot.element), f"{call.function.name}: {slot.argument.name}"
 
 
-@settings(max_examples=200)
+@settings(max_examples=share(200))
 @given(st.sampled_from(sorted(FWLIB.classes)), st.integers(0, 500))
 def test_a_length_in_another_packing_grows_with_it_and_is_whole_where_the_structure_is(
     name: str, length: int

@@ -72,7 +72,7 @@ REFUSED = [
     ("type.BOOLEAN", "A$=TRUE", "a text is needed"),
     ("type.BOOLEAN TRUE", "#A%=TRUE", "INVALID ASSIGNMENT"),
     ("type.BOOLEAN FALSE", "#A=FALSE", "INVALID ASSIGNMENT"),
-    ("type.BOOLEAN VAL", '#A?=VAL("1")', "INVALID ASSIGNMENT"),
+    ("type.BOOLEAN TRUE FALSE VAL", '#A?=VAL("1")', "INVALID ASSIGNMENT"),
     ("type.BOOLEAN", "DIM B?(2)\nB?(1)=2>1\nB?(2)=3", "INVALID ASSIGNMENT"),
     ("type.BOOLEAN op.lt", "#A?=TRUE<FALSE", "TRUE and FALSE are only compared by = and <>, not by <"),
     ("type.BOOLEAN op.ge", "#A?=B?>=TRUE", "TRUE and FALSE are only compared by = and <>, not by >="),
@@ -248,7 +248,10 @@ def test_truth_is_written_and_read_as_a_word(tmp_path: Path) -> None:
     ("kind", "mark", "bytes_each"),
     [
         pytest.param(
-            *each, marks=pytest.mark.covers(f"cpl.perm.DEF.{each[0]}", "cpl.perm.memory", "cpl.var.defperm")
+            *each,
+            marks=pytest.mark.covers(
+                f"cpl.perm.DEF.{each[0]}", "cpl.perm.memory", "cpl.var.defperm", "cpl.var.@_R"
+            ),
         )
         for each in (("INT", "%", 4), ("REAL", "", 4), ("DOUBLE", "!", 8), ("BOOL", "?", 1), ("CHAR", "$", 1))
     ],
@@ -283,3 +286,26 @@ def test_the_permanent_field_has_100_double_elements_and_numbers_are_integers(ro
     assert root.error("1 @_R(101)=1") == "1: INVALID FIELD LIMIT"
     assert root.error("1 @7=2.5") == "1: INVALID ASSIGNMENT"
     assert "there is no permanent variable @101" in root.error("1 @101=1")
+
+
+@pytest.mark.covers(
+    "cpl.err.INVALID_LOGICAL_NUMBER", "cpl.err.INVALID_FILE_NUMBER", "cpl.OPENW", "cpl.OPENR", "cpl.FILEPOS"
+)
+@pytest.mark.covers("cpl.PRN#.n.1-9", "cpl.FILESIZE", "cpl.SEEK", "cpl.CLOSE")
+def test_files_have_the_numbers_1_to_9(root: Root) -> None:
+    lines = [f'1 OPENW({n},"F{n}") : PRN#({n},"{n * 11}")' for n in range(1, 10)]
+    lines += [
+        f'2 CLOSE({n})\n3 OPENR({n},"F{10 - n}")\n4 INP#({n},#A{n}%)\n5 #B{n}%=FILESIZE({n},2)'
+        for n in (1, 9)
+    ]
+    found = root.run(
+        "\n".join(
+            line.replace("2 CLOSE(1)", "2 CLOSE(1) : CLOSE(9)").replace("2 CLOSE(9)\n", "") for line in lines
+        )
+    ).variables
+    assert [found[name] for name in ("#A1%", "#B1%", "#A9%", "#B9%")] == [99, 3, 11, 3]
+    for number in (0, 10, -1):
+        assert root.error(f'1 OPENW({number},"P")') == "1: INVALID LOGICAL NUMBER"
+        assert root.error(f'1 OPENR({number},"F1")') == "1: INVALID LOGICAL NUMBER"
+        assert root.error(f"1 A%=FILEPOS({number})") == "1: INVALID FILE NUMBER"
+        assert root.error(f"1 SEEK({number},1)") == "1: INVALID FILE NUMBER"

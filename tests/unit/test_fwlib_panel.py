@@ -283,6 +283,7 @@ def test_a_general_purpose_signal(bit: int) -> None:
     assert library.cnc_rdopnlgnrl(handle, 0xFF)[1].sgnal == 0xFF ^ 1 << bit
 
 
+@pytest.mark.covers("fanuc.cnc_wropnlgsname", "fanuc.cnc_wropnlgnrl")
 @pytest.mark.covers("fanuc.cnc_rdopnlgnrl", "fanuc.cnc_rdopnlgsname")
 @pytest.mark.covers(
     "fanuc.cnc_rdopnlgnrl.slct_data.bits15_8", "fanuc.cnc_wropnlgnrl.type.bits15_8",

@@ -91,6 +91,7 @@ def test_alarms_as_bits_and_by_number() -> None:
     assert (code, found.u.alm1.alm[0].alm_no, found.u.alm1.alm[0].axis) == (OK, 417, 3)
 
 
+@pytest.mark.covers("fanuc.cnc_statinfo")
 @covers("ODBST.run", "ODBST.motion", "ODBST.emergency", "ODBST.edit")
 def test_the_state_of_a_control_that_runs_holds_dwells_and_stops() -> None:
     control, handle = attached(axes=1)
@@ -168,6 +169,7 @@ def test_pmc_data_say_what_they_are_of() -> None:
     assert control.pmc.read("R", 111, 113) == b"\x11\x22\x33"
 
 
+@pytest.mark.covers("fanuc.pmc_rdpmcinfo")
 @covers("ODBPMCINF.info.pmc_adr", "ODBPMCINF.info.top_num", "ODBPMCINF.info.last_num")
 def test_pmc_areas_have_a_letter_and_ends() -> None:
     _, handle = attached()
@@ -179,6 +181,7 @@ def test_pmc_areas_have_a_letter_and_ends() -> None:
     assert fwlib.pmc_rdpmcrng(handle, 7, 0, 20, 20, 9)[0] == EW.EW_NUMBER
 
 
+@pytest.mark.covers("fanuc.cnc_wrparam", "fanuc.cnc_rdparam", "fanuc.ALL_AXES")
 @covers("IODBPSD.datano", "IODBPSD.type", "IODBPSD.u.ldata", "IODBPSD.u.ldatas")
 def test_stroke_limits_are_written_and_read_by_number_and_axis() -> None:
     control, handle = attached()
@@ -204,6 +207,7 @@ def test_parameters_of_bits_and_words_act() -> None:
     assert [control.parameters.value(1851, axis) for axis in (1, 2, 3)] == [7, -8, 9]
 
 
+@pytest.mark.covers("fanuc.cnc_rdparainfo")
 @pytest.mark.covers("fanuc.cnc_wrparas")
 @covers("ODBPARAIF.info.prm_type", "paramtype.two_word", "paramtype.word", "paramtype.byte", "paramtype.bit")
 @pytest.mark.parametrize(("number", "size"), [(3202, 1), (6710, 1), (1410, 2), (6711, 4)])
@@ -250,6 +254,9 @@ def test_diagnosis_data_of_a_control_that_moves() -> None:
     assert places[1].machine < 0 < places[0].machine
 
 
+@pytest.mark.covers(
+    "fanuc.concept.position_contents", "fanuc.concept.dynamic_snapshot", "fanuc.cnc_rddynamic"
+)
 @pytest.mark.covers("fanuc.cnc_rdseqnum")
 @covers("ODBDY.pos.faxis.absolute", "ODBDY.pos.faxis.machine", "ODBDY.pos.faxis.relative", "ODBSEQ.data")
 def test_positions_of_all_axes_at_once() -> None:
@@ -458,7 +465,9 @@ def test_what_the_manual_leaves_unused_is_zero_whatever_the_control_does() -> No
     control.parameters.set(8003, 1 << 7)
     control.clock.set_now(AT)
     sig = fwlib.IODBSIG(type=1)
-    sig.data[0] = (1, 44, 2, 0xFF)
+    first = sig.data[0]
+    for field, value in zip(("ent_no", "sig_no", "sig_name", "mask_pat"), (1, 44, 2, 0xFF), strict=True):
+        setattr(first, field, value)
     assert fwlib.cnc_wrhissgnl(handle, sig) == OK
     assert fwlib.cnc_clearophis(handle, 0) == fwlib.cnc_clearophis(handle, 1) == OK
     for number in (502, 503, 504):

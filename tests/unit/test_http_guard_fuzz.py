@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import random
-from collections.abc import Coroutine
+from collections.abc import Coroutine, MutableMapping
 from typing import Any
 
 import pytest
@@ -97,14 +97,14 @@ def _requests(seed: int, count: int) -> tuple[int, int]:
     guards = (Guard(app), Guard(app, token="s3cret"))
     piece = bytes(MOST_BODY_BYTES // 3)
     for _ in range(count):
-        scope, sent, left = _scope(dice), list[dict[str, Any]](), dice.choice((0, 0, 0, 2, 3))
+        scope, sent, left = _scope(dice), list[MutableMapping[str, Any]](), dice.choice((0, 0, 0, 2, 3))
 
         async def receive() -> dict[str, Any]:
             nonlocal left
             left -= 1
             return {"type": "http.request", "body": piece, "more_body": left >= 0}
 
-        async def send(message: dict[str, Any]) -> None:
+        async def send(message: MutableMapping[str, Any]) -> None:
             sent.append(message)  # noqa: B023
 
         guard, before = dice.choice(guards), len(handed)

@@ -99,6 +99,23 @@ def test_setpoints_actual_values_and_lag_are_told_apart(lagging: Living) -> None
     assert close(lagging.read(75, 1, 3), [x.actual - 5.5, z.actual + 0.5, 0])
 
 
+@pytest.mark.covers(
+    "cpl.cs.WCS", "cpl.cs.BCS", "cpl.cs.ACS", "cpl.cs.MCS", "cpl.MCODS.71", "cpl.MCODS.72", "cpl.MCODS.73"
+)
+@pytest.mark.covers("cpl.MCODS.74", "cpl.SPOS", "cpl.WPOS", "cpl.MPOS", "cpl.MCODS.37")
+def test_each_system_of_coordinates_has_its_shifts(lagging: Living) -> None:
+    """The shifts of axes lie between machine and axis coordinates, the length before the workpiece's."""
+    x, z = lagging.pnc.axes["X"].setpoint, lagging.pnc.axes["Z"].setpoint
+    wanted = {71: (x - 5.5, z + 0.5 - 42.5), 72: (x - 5.5, z + 0.5), 73: (x - 5.5, z + 0.5), 74: (x, z)}
+    assert {number: tuple(lagging.read(number, 1, 2)) for number in wanted} == {
+        number: pytest.approx(values, abs=1e-3) for number, values in wanted.items()
+    }
+    functions = lagging.pnc.system.functions(1)
+    assert (functions["WPOS"]("X"), functions["WPOS"](2)) == pytest.approx(wanted[71])
+    assert (functions["MPOS"](1), functions["MPOS"]("Z")) == pytest.approx(wanted[74])
+    assert (functions["SPOS"](1), functions["SPOS"]("Z")) == pytest.approx(wanted[74])
+
+
 @cases(
     Case(16, 0, [305.5, 117.0, 0, 0, 0], ("refresh",)),
     Case(23, 0, [300.0, 117.5, 0, 0, 0]),

@@ -322,6 +322,8 @@ def test_a_program_that_leaves_itself_hands_over_to_the_next(two: Two) -> None:
     "cpl.MCODS.70",
     "cpl.MCODS.70.val.1",
     "cpl.MCODS.refresh.I",
+    "cpl.ex.3165",
+    "cpl.ex.3209",
     "cpl.MCOPS.2",
     "cpl.MCOPS.5",
     "cpl.MCODS.refresh",
@@ -346,6 +348,7 @@ def test_starts_and_modes_have_their_conditions(two: Two) -> None:
     assert two.ask("MCOPS(7,2,4)", "MCOPS(7,2,6)", "MCOPS(7,2,5)") == [13, 0, 0]
     pnc = two.pnc
     group, bit = MODE_BY_PLC
+    assert (group, bit) == (0, 3 * 8)  # NC-I 3.0: byte 3 and bit 0 of the inputs of the channel
     pnc.system.interface.set_bit(group, 2, bit, True)
     assert two.ask("MCOPS(7,2,6)") == [13]
     pnc.system.interface.set_bit(group, 2, bit, False)

@@ -274,6 +274,11 @@ def test_standard_compensations_of_both_tables_and_of_a_file(living: Living) -> 
 
 # ---------------------------------------------------------------------- signals, PLC, errors, tool data
 
+GROUP_NAMES = (
+    "CHANNEL_INPUTS", "AXIS_INPUTS", "SPINDLE_INPUTS", "CHANNEL_OUTPUTS", "AXIS_OUTPUTS", "SPINDLE_OUTPUTS",
+    "GLOBAL_INPUTS", "GLOBAL_OUTPUTS", "FAST_INPUTS", "FAST_OUTPUTS",
+)  # fmt: skip
+"""The groups of signals from 0 on."""
 SIGNALS = {
     0: (112, 2), 1: (112, 5), 2: (112, 2), 3: (96, 2), 4: (64, 5), 5: (64, 2), 6: (32, 1), 7: (32, 1), 8: (8, 1),
     9: (6, 1),
@@ -286,19 +291,16 @@ def test_programs_read_each_group_of_signals(living: Living, group: int) -> None
     interface, bits = living.pnc.system.interface, (size - 1, size // 2, 3)
     asked = [f"?IC({bit},{group},{index})" for bit in (*bits, size - 2)]
     first = 1 if group not in (0, 3) else 0
+    near = [other for other in range(10) if other != group and bits[1] < SIGNALS[other][0]]
+    others = [f"?IC({bits[1]},{other},1)" for other in near]
+    others += [f"?IC({bits[1]},{group},{first})"] if index != first else []
     for value in (True, False):
         for bit in bits:
-            interface.set_bit(Signals(group), index, bit, value)
-        assert told(living, "", *asked)[:4] == [value, value, value, False]
-        others = [
-            f"?IC({bits[1]},{other},1)"
-            for other in range(10)
-            if other != group and bits[1] < SIGNALS[other][0]
-        ]
-        assert not any(
-            told(living, "", *others, *([f"?IC({bits[1]},{group},{first})"] if index != first else []))
-        )
-    for place in (f"{size},{group}", f"0,{group},{first - 1}", f"0,{group},90"):
+            interface.set_bit(Signals[GROUP_NAMES[group]], index, bit, value)
+        found = told(living, "", *asked, *others)
+        assert found[:4] == [value, value, value, False]
+        assert not any(found[4:])
+    for place in (f"{size},{group}", f"0,{group},{first - 1}"):
         assert stopped(living, f"A?=IC({place})") == "INVALID PARAMETER"
 
 
@@ -390,6 +392,13 @@ def test_timers_counters_and_data_modules_are_read_and_released_ones_written(
         assert stopped(living, statement) == "INVALID PARAMETER", statement
 
 
+CATEGORIES = {
+    1: Category.MINOR_SYSTEM, 2: Category.CONTROL_OR_DRIVE, 3: Category.INTERPOLATOR, 4: Category.HARDWARE,
+    5: Category.PLC, 6: Category.PART_PROGRAM, 8: Category.MSD_ERROR, 9: Category.MSD_WARNING,
+    10: Category.MSD_MESSAGE,
+}  # fmt: skip
+
+
 @pytest.fixture
 def faulty(living: Living) -> Iterator[Living]:
     """Return it with an error of each category in channel 1, two in channel 2 and one of all channels."""
@@ -397,7 +406,7 @@ def faulty(living: Living) -> Iterator[Living]:
     before = list(errors.errors)
     errors.errors[:] = []
     for category in (6, 1, 2, 3, 4, 5, 8, 9, 10):
-        errors.add(2000 + category, 1, Category(category))
+        errors.add(2000 + category, 1, CATEGORIES[category])
     errors.add(2101, 2, Category.PART_PROGRAM)
     errors.add(2102, 2, Category.CONTROL_OR_DRIVE)
     errors.add(1938, 2, Category.PART_PROGRAM)
@@ -709,3 +718,88 @@ def test_what_was_programmed_last_of_each_group_is_told_by_any_of_it(living: Liv
             lines.append(f'4 A$=NCF("{other}") : C{place}N{number}?=A$="{name}"')
             checks.append(f"?C{place}N{number}?")
     assert told(living, "\n".join([*lines, "N5 M5"]), *checks) == [1.0] * len(checks)
+
+
+@pytest.mark.covers(
+    "cpl.seltype.0",
+    "cpl.seltype.1",
+    "cpl.COF",
+    "cpl.DPC",
+    "cpl.SCL",
+    "cpl.CPOS",
+    "cpl.AXO",
+    "cpl.WPOS",
+    "cpl.MPOS",
+)
+def test_an_index_is_one_of_the_channel_unless_the_type_says_physical(turned: Living) -> None:
+    """X is coordinate 3 and physical axis 4; there is no coordinate 4 and no physical axis 3."""
+    before = "N1 G18 G92 X-7\nN2 G60 X25.4\nN3 G138 X50.8 R0\nN4 G38 X1.25\nN5 G1 X5 F9000\n6 WAIT"
+    functions = {"COF": "", "DPC": "", "SCL": "2,", "CPOS": "", "AXO": "", "WPOS": "", "MPOS": ""}
+    given = [("3", "3,1", "4,0", '"X"')] * len(functions)
+    calls = [
+        f"{name}({functions[name]}{each})"
+        for name, kinds in zip(functions, given, strict=True)
+        for each in kinds
+    ]
+    found = told(turned, before, *calls)
+    for place, name in enumerate(functions):
+        values = found[4 * place : 4 * place + 4]
+        assert values == [values[0]] * 4, name
+        assert values[0] not in (0, 1), name
+        for wrong in ("3,0", "4"):
+            what = stopped(turned, f"A={name}({functions[name]}{wrong})")
+            assert what.removesuffix(" [1938]") == "INVALID PARAMETER", (name, wrong)
+
+
+@pytest.mark.covers(
+    "cpl.param.1003_00001", "cpl.param.1003_00002", "cpl.param.1003_00012", "cpl.param.1015_00100"
+)
+@pytest.mark.covers(
+    "cpl.param.7010_00010", "cpl.param.7010_00020", "cpl.param.1020_00001", "cpl.MCA", "cpl.ex.2077"
+)
+@pytest.mark.covers("cpl.param.1001_00004", "cpl.param.7060_00010", "cpl.param.7060_00020")
+def test_parameters_of_axes_have_an_element_for_each_physical_axis(living: Living) -> None:
+    texts = {"100300001": ("X", "Z", "", "C", "X2", "", "U"), "701000010": ("X", "Z", "C"),
+             "701000020": ("X", "Z", "C", "X2", "U"), "706000010": ("G1", "G17", "G40", "G53", "G71", "G90", "G94"),
+             "706000020": ("G1", "G17", "G40", "G53", "G71", "G90", "G94")}  # fmt: skip
+    numbers = {"100300002": (1, 1, 0, 1, 2, 0, 2), "100300004": (1, 1, 0, 2, 1, 0, 1),
+               "100300012": (1, 1, 0, 1, 1, 0, 1)}  # fmt: skip
+    lines = ["1 DIM N$(40)"]
+    for number, names in texts.items():
+        lines += [f'2 N$=MCA({number},{k}) : C{number[-6:]}{k}?=N$="{name}"' for k, name in enumerate(names)]
+    asked = [f"?C{number[-6:]}{k}?" for number, names in texts.items() for k in range(len(names))]
+    more = [f"MCA({number},{k})" for number, values in numbers.items() for k in range(len(values))]
+    found = told(living, "\n".join(lines), *asked, *more)
+    assert found[: len(asked)] == [1.0] * len(asked)
+    assert found[len(asked) :] == [value for values in numbers.values() for value in values]
+
+
+@pytest.mark.covers(
+    "cpl.WPOS", "cpl.MPOS", "cpl.SPOS", "cpl.APOS", "cpl.ex.1493", "cpl.posfn.types", "cpl.cs.WCS"
+)
+@pytest.mark.covers("cpl.cs.MCS", "cpl.arg.coordsel", "cpl.arg.axissel")
+def test_positions_of_another_channel_are_in_its_workpiece_coordinates(living: Living) -> None:
+    """Each channel has a shift of its own; an axis that no channel has shows the machine's coordinates."""
+    living.write("main2", '1 FXC("X2",59,3)=4.5\nN2 G22 V3\nN3 G59\nN4 G1 X2=10 F6000\nN5 G4 F60\n')
+    living.pnc.select_program("main2", channel=2)
+    living.pnc.cycle_start(channel=2)
+    living.pnc.advance(400)
+    found = told(
+        living,
+        '1 FXC("X",58,3)=-2.25\nN2 G22 V3\nN3 G58\nN4 G1 X3 F6000\n5 WAIT',
+        *(
+            "WPOS(1,1,2)",
+            "MPOS(1,1,2)",
+            'WPOS("X2")',
+            'SPOS("X2")',
+            "APOS(5)",
+            "WPOS(1)",
+            "MPOS(1)",
+            'SPOS("X")',
+            "APOS(1)",
+        ),
+        *('WPOS("U")', "SPOS(7)"),
+    )
+    living.pnc.reset(channel=2)
+    u = living.pnc.axes["U"].setpoint
+    assert found == pytest.approx([10, 14.5, 10, 14.5, 14.5, 3, 0.75, 0.75, 0.75, u, u])

@@ -10,7 +10,7 @@ import pytest
 from polycnc.errors import ConfigurationError
 from polycnc.post import parse_control
 from support.post_cases import TABLES, blocks_of, check_every_way, control_with, rows_of
-from support.post_controls import control, posted
+from support.post_controls import control, control_text, posted
 
 Case = tuple[str | tuple[str, ...], str, dict[str, Any]]
 """The macros of one program, the blocks that they write, and parameters or words (those in capitals)."""
@@ -342,15 +342,20 @@ HOLDS = {
     ],
 )
 def test_the_tolerance_is_absolute_and_holds_for_all_numbers(operator: str, holds: tuple[bool, ...]) -> None:
-    macro = f"IF(X{operator}Y)\nyes\nELSE\nno\nENDIF\nIF(Y+2>9 || X+Z{operator}Y+Z)\nalso\nENDIF"
+    control = control_with(
+        {"RAPID": f"IF(X{operator}Y)\nyes\nELSE\nno\nENDIF\nIF(Y+2>9 || X+Z{operator}Y+Z)\nalso\nENDIF"}
+    )
+    written: list[str] = []
+    run = control.start(written.append)
     for base in (-12.25, -0.00002, 0.0, 7.0, 4000.5):
         for difference, wanted in zip((-FAR, -NEAR, 0.0, NEAR, FAR), holds, strict=True):
-            words: dict[str, float | str] = {"X": base + difference, "Y": base, "Z": -base}
-            found = blocks_of(macro, words=words)
-            assert found == (["yes"] if wanted else ["no"]) + ["also"] * (wanted or base > 7)
+            run.call("RAPID", {"X": base + difference, "Y": base, "Z": -base})
+            also = ["also\n"] * (wanted or base > 7)
+            assert [written.pop(0) for _ in range(len(written))] == ["yes\n" if wanted else "no\n", *also]
     for difference, like in ((-0.0001, holds[0]), (0.0001, holds[-1])):  # no smaller difference: not equal
-        words = {"X": difference, "Y": 0.0, "Z": 3.0}
-        assert blocks_of(f"IF(X{operator}Y)\nyes\nENDIF", words=words) == ["yes"] * like
+        run.call("RAPID", {"X": difference, "Y": 0.0, "Z": 3.0})
+        assert written.pop(0) == ("yes\n" if like else "no\n")
+        written.clear()
 
 
 REFUSED = [
@@ -452,6 +457,20 @@ def test_a_posted_program_has_what_its_words_stand_for() -> None:
         "G01Z-6.000F300.000",
         "M30",
     ]
+
+
+@pytest.mark.covers("post.word.TOOLCHANGE", "post.word.T", "post.word.function_var", "post.word.expand")
+def test_a_posted_tool_change_has_the_number_in_the_format_of_its_word() -> None:
+    text = control_text({"sequence_place": 2}, {"TOOL_CHANGE": "@1@!M06!$TOOLCHANGE$\n&T&$T$"})
+    for form, three, twelve in (
+        ("T%02d", "T03", "T12"),
+        ("Q%d.", "Q3.", "Q12."),
+        ("T0%03d", "T0003", "T0012"),
+    ):
+        blocks, _ = posted(PATH, parse_control(text.replace("T%d", form)))
+        assert [each for each in blocks if "M06" in each or each[0] in "TQ"] == [
+            f"N10M06{three}", three, f"N20M06{twelve}", twelve,
+        ]  # fmt: skip
 
 
 @pytest.mark.covers("post.seq.suppress", "post.seq.output", "post.seq.option2", "post.block.sequence_number")

@@ -48,8 +48,10 @@ CASES = [
 ]
 
 
-@pytest.mark.parametrize(("dialect", "language", "statement"), CASES)
-@pytest.mark.parametrize("line", often([1, 2, 5, 8, 10], 3))
+@pytest.mark.parametrize(
+    ("dialect", "language", "statement", "line"),
+    often([(*case, line) for case in CASES for line in (1, 2, 5, 8, 10)], 2 * len(CASES) - 1),
+)
 def test_a_searched_block_begins_where_the_whole_program_would(
     dialect: str, language: bool, statement: bool, line: int
 ) -> None:

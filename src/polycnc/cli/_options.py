@@ -112,10 +112,12 @@ Tolerance = Annotated[
 ]
 Resolution = Annotated[
     float | None,
-    typer.Option(help="Width of a cell of the stock (mm; default: by its size).", metavar="MM"),
+    typer.Option(
+        help="Width of a cell of the stock (mm; default: by its size).", metavar="MM", min=1e-6, max=1e6
+    ),
 ]
 SaveStock = Annotated[
-    Path | None, typer.Option(help="Write what is left of the stock to an .stl file.", metavar="FILE")
+    Path | None, typer.Option(help="Write what is left of the stock to an .stl or .3mf file.", metavar="FILE")
 ]
 SaveParameters = Annotated[
     Path | None,
@@ -129,6 +131,8 @@ LoopLimit = Annotated[
     typer.Option(
         help="How long a CPL loop may go round without a block or a WAIT (10 s of the machine's time).",
         metavar="S",
+        min=0.0,
+        max=1e9,
     ),
 ]
 Strict = Annotated[bool, typer.Option("--strict", help="Let remarks on the machining be errors.")]
@@ -156,7 +160,9 @@ Paths = Annotated[list[Path], typer.Argument(help="Programs, and folders of them
 CheckOnly = Annotated[bool, typer.Option("--check", help="Report errors only; run nothing.")]
 Jobs = Annotated[
     int | None,
-    typer.Option("--jobs", "-j", help="Processes (default: one for each core).", metavar="N", min=1),
+    typer.Option(
+        "--jobs", "-j", help="Processes (default: one for each core).", metavar="N", min=1, max=4096
+    ),
 ]
 Cluster = Annotated[
     str | None,
@@ -178,10 +184,10 @@ Pattern = Annotated[
     typer.Option(help="Programs of a folder, like '*.txt' (default: the usual endings).", metavar="GLOB"),
 ]
 Timeout = Annotated[
-    float, typer.Option(help="Seconds that one program may take; 0: any.", metavar="S", min=0.0)
+    float, typer.Option(help="Seconds that one program may take; 0: any.", metavar="S", min=0.0, max=1e9)
 ]
 Memory = Annotated[
-    float, typer.Option(help="Memory that one program may take, MB; 0: any.", metavar="MB", min=0.0)
+    float, typer.Option(help="Memory that one program may take, MB; 0: any.", metavar="MB", min=0.0, max=1e9)
 ]
 Done = Annotated[
     Path | None,

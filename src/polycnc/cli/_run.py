@@ -139,7 +139,7 @@ def _run(text: ProgramText, config: MachineConfig, settings: RunSettings, output
             names = tuple((axis.name, axis.unit) for axis in config.axes)
             runner.plot_track(result, names, picture.track(picture.execution()), outputs.plot)
         if outputs.stock is not None and result.stock is not None:
-            result.stock.mesh().write_stl(outputs.stock)
+            result.stock.mesh().write(outputs.stock)
     return result
 
 
@@ -147,15 +147,16 @@ def check_stock_file(path: Path | None, stock: str | None) -> None:
     """Check that what is left of the stock can be written where it should.
 
     Raises:
-        UsageError: nothing is cut, or no .stl file.
+        UsageError: nothing is cut, or no .stl or .3mf file.
     """
     from polycnc.outputs import check_output
+    from polycnc.stock import MESH_FORMATS
 
     if path is None:
         return
     if stock is None:
         raise UsageError("there is no stock to save", hint="Say what is cut: --stock auto.")
-    check_output(path, (".stl",), "stock")
+    check_output(path, MESH_FORMATS, "stock")
 
 
 def _say_total(results: Sequence[RunResult]) -> None:

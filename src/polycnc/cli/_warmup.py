@@ -33,6 +33,12 @@ G1 Z-2 F600
 X20 Y3
 M30
 """
+_TURNED = """(T1 D=4. - flat end mill)
+T1 M6
+S500 M3
+G1 A5 Z8 F300
+M30
+"""
 _SHAFT = """(T1 CNMG120408)
 T1 M6
 S500 M4
@@ -98,6 +104,8 @@ def _warm_stock(progress: Progress) -> None:
         progress("a body from a file", 0.6)
         body = str(part)
         runner.run(_PLATE, dialect="fanuc", check=False, stock=body, resolution_mm=1.0, target=body)
+    progress("a table that turns", 0.7)
+    runner.run(_TURNED, "mill5", "din", check=False, stock="box=-9,-9,-9,9,9,9", resolution_mm=1.0)
     progress("a shaft", 0.8)
     runner.run(_SHAFT, "lathe2", "din", check=False, stock="cylinder=20,-9,0", resolution_mm=1.0)
 

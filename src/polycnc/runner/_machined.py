@@ -11,7 +11,7 @@ import numpy.typing as npt
 
 from polycnc.errors import SourcePosition
 from polycnc.runner._blocks import Blocks
-from polycnc.stock import ContactKind, Form, Insert, Rows, Stock, TargetComparison, Tool, Turned
+from polycnc.stock import ContactKind, Form, Insert, Rows, Stock, TargetComparison, Tool, Turned, Voxels
 
 Floats = npt.NDArray[np.float64]
 
@@ -60,7 +60,7 @@ class Machined:
     on their `course`, from `zero_mm` in machine coordinates.
     """
 
-    stock: Stock | Turned
+    stock: Stock | Turned | Voxels
     blocks: Blocks
     removed_mm3: Floats
     by_tool_mm3: Mapping[int, float]

@@ -10,10 +10,11 @@ import numpy.typing as npt
 
 from polycnc.errors import SourcePosition, UsageError
 from polycnc.kernel import IS_RAPID, LEADING, TIME_S
-from polycnc.machine import MachineConfig, RotaryAxis, ToolConfig
+from polycnc.machine import MachineConfig, ToolConfig
 from polycnc.nc import CONTEXT_SHIFT, BlockRecords
 from polycnc.runner._blocks import BlockTable, ExecutedBlock
 from polycnc.runner._machined import Collision, IdleFeed, Machined
+from polycnc.runner._rotation import tip_and_axis, turning_axes
 from polycnc.runner._stock_tools import tools_of
 from polycnc.runner._turning_tools import turning_tools_of
 from polycnc.stock import (
@@ -21,13 +22,14 @@ from polycnc.stock import (
     Cutting,
     Form,
     Insert,
-    NoStockError,
     Rows,
     Stock,
     Tally,
     Tool,
     Turned,
+    TurnedCutting,
     TurningCutting,
+    Voxels,
     fixtures_of,
 )
 
@@ -54,12 +56,8 @@ class MachiningCollector:
                 hint="Stock is cut on machines with X, Y and Z, and on lathes with X and Z.",
             )
         self._config = config
-        self._turning = [
-            (LEADING + index, axis.name)
-            for index, axis in enumerate(config.axes)
-            if isinstance(axis, RotaryAxis) and axis.carries != "nothing"
-        ]
-        self._turned = ""
+        self._turning = [LEADING + number for number, _ in turning_axes(config)]
+        self._turned = False
         self._axes = [config.axis_names.index(name) for name in self._names]
         self._table = BlockTable()
         self._course = Course()
@@ -70,9 +68,7 @@ class MachiningCollector:
         """Take a piece of the record."""
         if not len(rows):
             return
-        for column, name in self._turning:
-            if not self._turned and np.any(rows[:, column] != 0.0):
-                self._turned = name
+        self._turned = self._turned or bool(np.any(rows[:, self._turning] != 0.0))
         contexts = tags >> CONTEXT_SHIFT
         begins = np.flatnonzero(np.diff(contexts, prepend=~contexts[:1]))
         lengths = np.diff(begins, append=len(tags))
@@ -82,7 +78,8 @@ class MachiningCollector:
         turns = np.concatenate([records.spindle_turns(piece) for piece in pieces])
         starts = np.flatnonzero(np.diff(tags, prepend=~tags[:1]))
         block = np.repeat(self._table.numbers(tags[starts], records), np.diff(starts, append=len(tags)))
-        place = rows[:, LEADING : LEADING + len(self._config.axes)][:, self._axes]
+        position = rows[:, LEADING : LEADING + len(self._config.axes)]
+        place = position[:, self._axes]
         rapid = rows[:, IS_RAPID] != 0.0
         if self._zero is None:
             cuts = np.flatnonzero(~rapid[1:] & np.any(place[1:] != place[:-1], axis=1))
@@ -92,8 +89,10 @@ class MachiningCollector:
                 self._zero = [sum(offset[axis] for offset in offsets) for axis in self._axes]
         if self._lathe:
             place = np.insert(place, 1, 0.0, axis=1)
-        tip = place - shift
-        self._course.add(Rows(rows[:, TIME_S].copy(), tip, block, tool, rapid, turns))
+        tip, axis = place - shift, np.array([[0.0, 0.0, 1.0]])
+        if self._turning:
+            tip, axis = tip_and_axis(self._config, position, place, -shift)
+        self._course.add(Rows(rows[:, TIME_S].copy(), tip, block, tool, rapid, turns, axis))
 
     def _context(self, tag: int, records: BlockRecords) -> tuple[list[float], int]:
         """Return how a block's tool hangs from the spindle, and its number."""
@@ -116,11 +115,6 @@ class MachiningCollector:
         Raises:
             UsageError: a body that cannot be derived, or none that can be cut.
         """
-        if self._turned:
-            raise NoStockError(
-                f"axis {self._turned} turns the part or the tool: stock is cut on three axes only",
-                hint="Run the program without stock.",
-            )
         course, (x, y, z) = self._course.rows(), self._zero_mm()
         course = replace(course, tip=course.tip - (x, y, z))
         if self._lathe:
@@ -130,6 +124,10 @@ class MachiningCollector:
             return self._what_was_cut(turned.stock, turned.tally, form, course, given)
         given = tools_of(self._config, self.texts) if tools is None else tools
         mills = {number: tool for number, tool in given.items() if isinstance(tool, Tool)}
+        if self._turned:
+            solid = TurnedCutting(form.voxels(), mills)
+            solid.add(course)
+            return self._what_was_cut(solid.stock, solid.tally, form, course, given)
         stock = form.body(course, mills)
         target = form.target_of(stock)
         cutting = Cutting(stock, mills, fixtures_of(form.fixtures, stock.cell_mm), target)
@@ -143,7 +141,7 @@ class MachiningCollector:
 
     def _what_was_cut(
         self,
-        stock: Stock | Turned,
+        stock: Stock | Turned | Voxels,
         tally: Tally,
         form: Form,
         course: Rows,

@@ -260,6 +260,9 @@ def _batch() -> Schema:
             "top_feed_mm_min": _or_null(_number("mm/min", low=0.0)),
             "blocks": count,
             "cycles": count,
+            "removed_mm3": _or_null(
+                _number("What was removed of the stock, mm3; null: none was cut", low=0.0)
+            ),
             "errors": _list(_TEXT),
             "messages": _list(_TEXT),
             "tools": _list(row(_COUNT, number, number), description="Tool, cutting and rapid time, s."),

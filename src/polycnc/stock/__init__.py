@@ -7,6 +7,7 @@ from polycnc.stock._fixtures import check_fixtures, fixtures_of
 from polycnc.stock._form import Form, NoStockError, around
 from polycnc.stock._insert import Insert, InsertKind, grooving_tool, iso_insert, threading_tool
 from polycnc.stock._mesh import Mesh
+from polycnc.stock._mesh_files import MESH_FORMATS
 from polycnc.stock._profile import Arc, Line, Profile, make_profile
 from polycnc.stock._rows import Rows
 from polycnc.stock._solid import read_stl
@@ -15,10 +16,13 @@ from polycnc.stock._target import TOLERANCE_MM, Target, TargetComparison
 from polycnc.stock._tool import Tool, ToolKind
 from polycnc.stock._tool_text import tool_number, tool_of_remark
 from polycnc.stock._turned import Turned
+from polycnc.stock._turned_cutting import TurnedCutting
 from polycnc.stock._turning import TurningCutting
+from polycnc.stock._voxels import Voxels
 from polycnc.stock._ways import Tally
 
 __all__ = [
+    "MESH_FORMATS",
     "TOLERANCE_MM",
     "Arc",
     "Box",
@@ -42,7 +46,9 @@ __all__ = [
     "Tool",
     "ToolKind",
     "Turned",
+    "TurnedCutting",
     "TurningCutting",
+    "Voxels",
     "around",
     "check_fixtures",
     "fixtures_of",

@@ -17,6 +17,7 @@ from polycnc.stock._stock import Box, Stock, check_cell
 from polycnc.stock._target import TOLERANCE_MM, Target, check_tolerance
 from polycnc.stock._tool import Tool
 from polycnc.stock._turned import Turned
+from polycnc.stock._voxels import Voxels
 
 MARGIN_MM = 1.0
 """Of an `auto` body around what is cut."""
@@ -94,6 +95,30 @@ class Form:
         else:
             raise UsageError(f"'{self.text}' on a lathe", hint="Write auto or cylinder=D,Z0,Z1.")
         return Turned(diameter, low, high, self.cell_mm or _cell_mm((high - low) / _FINER_TURNED))
+
+    def voxels(self) -> Voxels:
+        """Return the body for tools that come from any side.
+
+        Raises:
+            UsageError: a body that is not one of these.
+        """
+        if self.fixtures or self.target is not None:
+            raise UsageError(
+                "fixtures and targets with turning axes", hint="They are for three axes: leave them out."
+            )
+        kind, _, numbers = self.text.partition("=")
+        if kind == "box":
+            x0, y0, z0, x1, y1, z1 = numbers_of(self.text, numbers, 6)
+            size = max(x1 - x0, y1 - y0, z1 - z0)
+            return Voxels(Box((x0, y0, z0), (x1, y1, z1)), self.cell_mm or _cell_mm(_FINER_TURNED * size))
+        if kind == "cylinder":
+            diameter, low, high = numbers_of(self.text, numbers, 3)
+            cell_mm = self.cell_mm or _cell_mm(_FINER_TURNED * max(diameter, high - low))
+            return Voxels.cylinder(diameter, low, high, cell_mm)
+        raise NoStockError(
+            f"'{self.text}' where an axis turns the part or the tool",
+            hint="Write box=X0,Y0,Z0,X1,Y1,Z1 or cylinder=D,Z0,Z1.",
+        )
 
     def target_of(self, stock: Stock) -> Target | None:
         """Return what is to come out of a body; None if that is not said.

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
@@ -11,12 +11,16 @@ import numpy.typing as npt
 Floats = npt.NDArray[np.float64]
 Integers = npt.NDArray[np.int64]
 
+ARM_MM = 50.0
+"""How far up its axis a tool is looked at where it turns."""
+
 
 @dataclass(frozen=True, eq=False)
 class Rows:
     """Hold a piece of a record, one row a cycle: `tip` is the end of the tool (mm).
 
-    `turns` are those of the spindle in a minute: above zero clockwise (M3), below the other way; 0: it is at rest.
+    `axis` points from the tip to the holder. `turns` are those of the spindle in a minute: above zero clockwise (M3),
+    below the other way; 0: it is at rest.
     """
 
     t_s: Floats
@@ -25,10 +29,18 @@ class Rows:
     tool: Integers
     rapid: npt.NDArray[np.bool_]
     turns: Floats
+    axis: Floats = field(default_factory=lambda: np.array([[0.0, 0.0, 1.0]]))  # [rows, 3], or one for all
 
     def columns(self) -> tuple[npt.NDArray[Any], ...]:
         """Return the columns in their order."""
-        return self.t_s, self.tip, self.block, self.tool, self.rapid, self.turns
+        axis = np.broadcast_to(self.axis, self.tip.shape)
+        return self.t_s, self.tip, self.block, self.tool, self.rapid, self.turns, axis
+
+    def guides(self) -> Floats:
+        """Return where the tool is by its tip, and where it turns by a point up its axis too [rows, 3 or 6]."""
+        if len(self.axis) < 2 or np.all(self.axis == self.axis[0]):
+            return np.ascontiguousarray(self.tip)
+        return np.concatenate((self.tip, self.tip + ARM_MM * self.axis), axis=1)
 
     def at(self, places: Integers) -> Rows:
         """Return the rows at these places."""

@@ -62,7 +62,7 @@ def _outline(row: Floats, r: float) -> float:
 
 
 @compiled
-def _level(rows: Floats, r: float) -> float:
+def level(rows: Floats, r: float) -> float:
     """Return the height of an outline at radius `r`."""
     for i in range(rows.shape[0]):
         if r <= rows[i, TO_R]:
@@ -143,7 +143,7 @@ def lowest(rows: Floats, q2: float, slope: float, before: float, after: float) -
     """
     if slope == 0.0:
         w = min(max(0.0, before), after)
-        return _level(rows, math.sqrt(q2 + w * w))
+        return level(rows, math.sqrt(q2 + w * w))
     found = _FAR
     for i in range(rows.shape[0]):
         outer2 = rows[i, TO_R] * rows[i, TO_R] - q2
@@ -168,7 +168,7 @@ def _bounds(rows: Floats, reach: float, bounds: Floats) -> None:
     """
     outer = rows[rows.shape[0] - 1, TO_R]
     for i in range(bounds.shape[0]):
-        bounds[i] = _level(rows, max(0.0, (outer + reach) * math.sqrt(i / bounds.shape[0]) - reach))
+        bounds[i] = level(rows, max(0.0, (outer + reach) * math.sqrt(i / bounds.shape[0]) - reach))
 
 
 @compiled
@@ -227,7 +227,7 @@ def _sweep_chord(
             if length > 0.0:
                 z = begin[2] + slope * along + lowest(rows, beside * beside, slope, -along, length - along)
             else:
-                z = lowest_tip + _level(rows, math.sqrt(dx * dx + dy * dy))
+                z = lowest_tip + level(rows, math.sqrt(dx * dx + dy * dy))
             z = max(z, grid.bottom)
             if z >= here:
                 continue

@@ -27,6 +27,12 @@ class Ways:
     rows: Rows
 
     @property
+    def axes(self) -> Floats:
+        """The axis of the tool at each place [n + 1, 3]."""
+        axis = np.broadcast_to(self.rows.axis, self.rows.tip.shape)
+        return axis[np.concatenate((self.begins[:1], self.ends))]
+
+    @property
     def number(self) -> int:
         """The number of the tool."""
         return int(self.rows.tool[self.ends[0]])
@@ -81,7 +87,7 @@ class WaysOfRows:
         rows = rows if self._last is None else joined([self._last, rows])
         self._last = rows.at(np.array([len(rows.t_s) - 1]))
         ends = np.zeros(len(rows.t_s), np.int64)
-        count = find_chords(rows.tip, rows.keys(), self._tolerance_mm, ends)
+        count = find_chords(rows.guides(), rows.keys(), self._tolerance_mm, ends)
         nodes = np.concatenate(([0], ends[:count]))
         tool, rapid = rows.tool[nodes], rows.rapid[nodes]
         # Another tool has not come that way.

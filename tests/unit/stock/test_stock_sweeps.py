@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 
 from polycnc.stock import Box, Cutting, Rows, Stock, Tool, ToolKind
 from polycnc.stock._sweep import _steps
+from support.often import share
 
 TOOLS = {
     "flat": Tool(ToolKind.FLAT, 8.0),
@@ -77,7 +78,7 @@ def test_a_drilled_hole_through_the_body_ends_at_its_bottom() -> None:
 coordinates = st.tuples(st.floats(2.0, 50.0), st.floats(2.0, 34.0), st.floats(-9.0, 1.0))
 
 
-@settings(max_examples=60)
+@settings(max_examples=share(60))
 @given(name=st.sampled_from(sorted(TOOLS)), begin=coordinates, end=coordinates)
 def test_a_way_leaves_what_the_tool_leaves_at_all_of_its_places(
     name: str, begin: tuple[float, float, float], end: tuple[float, float, float]
@@ -111,7 +112,7 @@ def test_a_way_leaves_what_the_tool_leaves_at_all_of_its_places(
     places=st.lists(coordinates, min_size=3, max_size=6),
     at=st.integers(1, 4),
 )
-@settings(max_examples=40)
+@settings(max_examples=share(40))
 def test_a_record_may_be_cut_anywhere(name: str, places: list[tuple[float, float, float]], at: int) -> None:
     whole, parts = Cutting(block_of(0.5), {1: TOOLS[name]}), Cutting(block_of(0.5), {1: TOOLS[name]})
     piece = rows(places)

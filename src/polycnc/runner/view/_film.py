@@ -9,7 +9,7 @@ import numpy.typing as npt
 
 from polycnc.errors import UsageError
 from polycnc.runner._machined import Machined
-from polycnc.stock import Cutting, Turned
+from polycnc.stock import Cutting, Stock
 
 Floats = npt.NDArray[np.float64]
 Places = npt.NDArray[np.int32]
@@ -42,8 +42,8 @@ class Film:
 
 def film_of(machined: Machined) -> Film:
     """Return the film of a body that has been cut, with as many cells as a page can bear."""
-    if isinstance(machined.stock, Turned):
-        raise UsageError("the page shows stock on three axes only", hint="Leave --stock out for a lathe.")
+    if not isinstance(machined.stock, Stock):
+        raise UsageError("the page shows stock on three axes only", hint="Leave --stock out.")
     count = max(machined.stock.heights.shape)
     several = max(1, -(-count // MOST_ACROSS))
     while True:

@@ -14,10 +14,11 @@ from polycnc.machine import MachineConfig
 from polycnc.nc import ProgramText
 from polycnc.runner._blocks import KINDS
 from polycnc.runner._outcome import RunOutcome, counted, time_text
+from polycnc.runner._rotation import turning_axes
 from polycnc.runner.view._film import Film, film_of
 from polycnc.runner.view._listing import Listing
 from polycnc.runner.view._motion import DERIVATIVES
-from polycnc.runner.view._part_frame import turning_axes, with_part_frame
+from polycnc.runner.view._part_frame import with_part_frame
 from polycnc.runner.view._picture import Axes, columns_of, kinematics, places, tool_shapes, zero_of_work
 from polycnc.runner.view._track import Track
 from polycnc.web import Page

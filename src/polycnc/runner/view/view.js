@@ -2,6 +2,7 @@
 import { Group, Matrix4, Vector3 } from "three";
 import { Chart } from "./chart.js";
 import { Field } from "./field.js";
+import { save, stl, surface, threeMf } from "./files.js";
 import { floor } from "./floor.js";
 import { after, clockText, units } from "./format.js";
 import { polyline } from "./lines.js";
@@ -322,6 +323,14 @@ export async function start(buffers) {
   if (!record.points) say("The program moves no axis.");
   element("stocks").hidden = element("sections").hidden = !body;
   if (body && !body.changes) element("stock").value = "off"; // no tool is known: the path says more
+  for (const each of element("save").options) each.hidden = each.disabled = !body && ["stl", "3mf"].includes(each.value);
+  element("save").onchange = async () => { // the picture, or the body, as it is shown
+    const how = element("save").value, name = `${element("title").textContent.replace(/\.[^.]*$/, "") || "part"}.${how}`;
+    element("save").value = "";
+    if (how === "png") { stage.render(); stage.canvas.toBlob((blob) => save(blob, name)); }
+    else if (how) save(await { stl, "3mf": threeMf }[how](surface(body.solid())), name);
+    if (how) say(`${name}${how === "png" ? "" : ", mm from program zero"}`);
+  };
   for (const id of ["stock", "section", "cut"]) element(id).oninput = () => drawBody();
   element("frames").hidden = !about.chain.length;
   element("frame").onchange = () => goTo(now);
@@ -357,6 +366,7 @@ export async function start(buffers) {
     shownExecution = shownTool = -1; listing.lit = -2;
     goTo(now);
   }
+  if (body && body.changes) now = record.end_s; // the part first: what has been cut
   draw();
   look(shownViews[0]);
   element("stage").seen = { path, stage, part, body };
