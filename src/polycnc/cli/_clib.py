@@ -25,7 +25,10 @@ def clib_command(
     ] = None,
     source_only: Annotated[bool, typer.Option(help="Write header and source, and build nothing.")] = False,
     packing: Annotated[
-        int, typer.Option(help="To how many bytes the program packs structures; 0: as the manual has them.")
+        int,
+        typer.Option(
+            help="To how many bytes the program packs structures; 0: as the manual has them.", min=0, max=8
+        ),
     ] = 0,
     in_process: Annotated[
         bool, typer.Option(help="Have the machines in the program's own process (Linux, 64 bits).")
