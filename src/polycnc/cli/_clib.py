@@ -30,7 +30,7 @@ def clib_command(
             help="To how many bytes the program packs structures; 0: as the manual has them.",
             metavar="N",
             min=0,
-            max=16,
+            max=8,
         ),
     ] = 0,
     in_process: Annotated[
@@ -77,5 +77,10 @@ def _say_missing(program: Path, library: CLibrary) -> None:
     idle = [name for name in taken if name in library.left_out]
     for name in idle:
         say(f"{name} has no effect: {library.left_out[name]}")
+    for name in filter(library.extensions.__contains__, taken):
+        made = library.extensions[name].__name__
+        say(
+            f"{name} has no effect with the manual's record, which has no place for the value; {made} has one"
+        )
     if absent:
         sys.exit(PROGRAM)
