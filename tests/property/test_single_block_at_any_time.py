@@ -48,8 +48,9 @@ def _breakpoint(run: ProgramRun) -> None:
 
 
 def _override(run: ProgramRun) -> None:
-    run.overrides.feed = 0.75
-    run.overrides.feed = 1.0
+    before = run.overrides.feed
+    run.overrides.feed = 0.75 * before
+    run.overrides.feed = before
 
 
 def _optional_stop(run: ProgramRun) -> None:
@@ -104,6 +105,17 @@ def test_no_act_moves_a_planned_stop(act: str) -> None:
         assert acceleration <= 100.0 * ROUNDING, cycle
 
 
+@pytest.mark.parametrize("override", [1.0, 2.0])
+def test_an_override_that_falls_and_rises_again_costs_no_time(override: float) -> None:
+    config = machine(0.01, 389.0)
+    text = "G91\nG1 X-8 F600\nX-1\n"
+    wanted, _ = stops(text, config, {}, override=override)
+    for cycle in range(1, wanted[-1].cycle):
+        found, acceleration = stops(text, config, {cycle: _override}, override=override)
+        assert found == wanted, cycle
+        assert acceleration <= 389.0 * ROUNDING, cycle
+
+
 @pytest.mark.parametrize(
     "seeds", [ALWAYS, pytest.param(LONG, marks=[pytest.mark.long, pytest.mark.timeout(0)])]
 )
@@ -116,13 +128,14 @@ def test_random_acts_on_random_programs_keep_stops_and_limits(seeds: range) -> N
             for _ in range(5)
         ]
         text = "\n".join(lines) + "\n"
-        wanted, _ = stops(text, config, {})
+        override = float(rng.choice((0.5, 1.0, 2.0)))
+        wanted, _ = stops(text, config, {}, override=override)
         names = list(ACTS)
         acts = {
             int(rng.integers(1, wanted[-1].cycle)): ACTS[names[int(rng.integers(len(names)))]]
             for _ in range(9)
         }
-        found, acceleration = stops(text, config, acts)
+        found, acceleration = stops(text, config, acts, override=override)
         assert _alike(found, wanted, len(acts)), seed
         assert acceleration <= config.axes[0].amax * ROUNDING, seed
 

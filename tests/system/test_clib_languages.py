@@ -101,7 +101,7 @@ def test_records_of_pascal_are_as_large_as_in_c(kind: str, tmp_path: Path) -> No
     names = [f"{name}_" if name.lower() in ("as",) else name for name in _sized(library)]
     lines = "\n".join(f"  WriteLn(SizeOf({name}));" for name in names)
     (tmp_path / "sizes.pas").write_text(f"program sizes;\nuses {library.name};\nbegin\n{lines}\nend.\n")
-    said = _run(_pascal(tmp_path / "sizes.pas", folder, tmp_path), LD_LIBRARY_PATH=str(folder))
+    said = _run(_pascal(tmp_path / "sizes.pas", folder, tmp_path), at={"LD_LIBRARY_PATH": str(folder)})
     assert [int(each) for each in said.split()] == [ctypes.sizeof(cls) for cls in _sized(library).values()]
 
 

@@ -43,20 +43,24 @@ TERMINALS = """
 STEMS = {"jtv": "jtvl"}
 
 
-def put(pc: Pc, an: int, **values: float) -> None:
+def put(pc: Pc, an: int, **values: float) -> Any:
     for name, value in values.items():
         getattr(pcap, f"wr{STEMS.get(name, name)}")(pcap.TSRP(an=an, **{name: value}))
 
 
-def go(pc: Pc, an: int, function: Callable[..., Any], target: float) -> None:
+def go(pc: Pc, an: int, function: Callable[..., Any], target: float) -> Any:
     pc.tsrp[an].tp = target
     function(pcap.AS.of(an), pc.tsrp)
 
 
-def line(pc: Pc, an: int, function: Callable[..., Any], *distances: float) -> None:
+def line(pc: Pc, an: int, function: Callable[..., Any], *distances: float) -> Any:
     for distance in distances:
         dtm = [distance if k == an else 0.0 for k in range(18)]
         function(pcap.AS.of(an), pcap.LMP(ac=250.0, vl=35.0, dtm=dtm))
+
+
+def switch(pc: Pc, number: int, on: bool) -> Any:
+    pc.board.set_input(number, on)
 
 
 SCENES: dict[str, list[Step]] = {
@@ -84,8 +88,8 @@ SCENES: dict[str, list[Step]] = {
     "searches": [
         (40, lambda pc, an: (pcap.cl(pcap.AS.of(an)), go(pc, an, pcap.jhi, 2.5))),
         (30, lambda pc, an: pcap.jhl(pcap.AS.of(an))),
-        (30, lambda pc, an: (put(pc, an, hac=300000.0), pc.board.set_input(4, True))),
-        (20, lambda pc, an: (pc.board.set_input(4, False), pc.board.set_input(3, True))),
+        (30, lambda pc, an: (put(pc, an, hac=300000.0), switch(pc, 4, True))),
+        (20, lambda pc, an: (switch(pc, 4, False), switch(pc, 3, True))),
         (20, lambda pc, an: pcap.lps(an, 5)),
     ],
     "limits": [
@@ -95,13 +99,13 @@ SCENES: dict[str, list[Step]] = {
         ),
         (60, lambda pc, an: go(pc, an, pcap.jr, 9.0)),
         (60, lambda pc, an: (pcap.cl(pcap.AS.of(an)), go(pc, an, pcap.jr, -9.0))),
-        (30, lambda pc, an: (pcap.cl(pcap.AS.of(an)), pc.board.set_input(5, True), go(pc, an, pcap.jr, 4.0))),
+        (30, lambda pc, an: (pcap.cl(pcap.AS.of(an)), switch(pc, 5, True), go(pc, an, pcap.jr, 4.0))),
         (
             30,
             lambda pc, an: (
-                pc.board.set_input(5, False),
-                pc.board.set_input(6, True),
-                pc.board.set_input(7, True),
+                switch(pc, 5, False),
+                switch(pc, 6, True),
+                switch(pc, 7, True),
             ),
         ),
     ],

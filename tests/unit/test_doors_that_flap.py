@@ -144,7 +144,8 @@ def test_a_dropped_call_is_not_carried_out_and_those_before_it_are() -> None:
             with pytest.raises((asyncio.IncompleteReadError, ConnectionError)):
                 await reader.readexactly(10_000)
             writer.close()
-            macros = machine.device.custom_macros
+            device: Any = machine.device
+            macros = device.custom_macros
             return macros.variables.get(103) is not None, macros.variables.get(104) is not None
         finally:
             await door.close()

@@ -145,6 +145,17 @@ def _steps(seg: Segments, paths: Paths, g: int, *_: object) -> int:
     return 3 * int(paths.row["tail"][g] - paths.row["head"][g]) + 1
 
 
+@compiled
+def _keep_planned(seg: Segments, paths: Paths, g: int, begin: int, first_end: int) -> None:
+    """Keep what segments have been planned with: caps from count `begin` on, junctions from `first_end` on."""
+    for count in range(min(begin, first_end), int(paths.row[g]["prepared"])):
+        row = seg.row[slot(paths, g, count)]
+        if count >= begin:
+            row["planned_cap"] = row["cap"]
+        if count >= first_end:
+            row["planned_junction"] = row["junction"]
+
+
 @entry(steps=_steps)
 def prepare_path(seg: Segments, paths: Paths, g: int, limits: AxisLimits, dt: float, work: Table) -> None:
     """Take what was appended since the last call into the look-ahead of path `g`. `work` is scratch, [3, n].
@@ -166,8 +177,10 @@ def prepare_path(seg: Segments, paths: Paths, g: int, limits: AxisLimits, dt: fl
         first_end = first
     path["prepared"] = ready
     begin = first_open(path, first)
-    limit_queue(seg, paths, g, limits, dt, begin, min(first_end, max(begin - 1, head)), work)
+    first_end = min(first_end, max(begin - 1, head))
+    limit_queue(seg, paths, g, limits, dt, begin, first_end, work)
     limit_cruise(seg, paths, g, begin, first)
+    _keep_planned(seg, paths, g, begin, first_end)
     _ask_for_caps(seg, paths, g, begin)
     _plan(seg, paths, g, dt)
     if goes_on:
@@ -175,20 +188,14 @@ def prepare_path(seg: Segments, paths: Paths, g: int, limits: AxisLimits, dt: fl
 
 
 @compiled
-def _lower_cap(seg: Segments, k: int, limits: AxisLimits, path: np.void) -> None:
-    """Lower the cap of a segment that keeps all else it was planned with; an override of 0 holds it instead."""
-    seg.row[k]["cap"] = _asked_cap(seg, k, limits, path)
-
-
-@compiled
-def _asked_cap(seg: Segments, k: int, limits: AxisLimits, path: np.void) -> float:
-    """Return the cap of a segment, or what feed and override make of it if that is lower."""
+def _asked_cap(seg: Segments, k: int, limits: AxisLimits, path: np.void, most: float) -> float:
+    """Return what feed and override make of the cap of a segment, `most` at most; an override of 0 holds it instead."""
     row = seg.row[k]
     if row["flags"] & RAPID:
         cap = overridden_rapid(line_speed(seg, k, limits), path)
     else:
         cap = feed_in_force(row, path)
-    return float(min(row["cap"], cap) if cap > 0.0 else row["cap"])
+    return float(min(most, cap) if cap > 0.0 else most)
 
 
 @entry
@@ -236,7 +243,7 @@ def replan_path(seg: Segments, paths: Paths, g: int, limits: AxisLimits, dt: flo
     for count in range(head, head if with_jerk else min(first, last)):
         passed = slot(paths, g, count)
         seg.row[passed]["bound"] = max(seg.row[passed]["bound"], seg.row[passed]["out"])
-        _lower_cap(seg, passed, limits, path)
+        seg.row[passed]["cap"] = _asked_cap(seg, passed, limits, path, seg.row[passed]["planned_cap"])
     limit_queue(seg, paths, g, limits, dt, first, first, work)
     limit_cruise(seg, paths, g, first, last)
     if with_jerk and first < last:  # it may be entered faster than it will be traversed
@@ -247,11 +254,12 @@ def replan_path(seg: Segments, paths: Paths, g: int, limits: AxisLimits, dt: flo
         seg.row[k]["full_accel"] = accel
     for count in range(head, head if with_jerk else min(first, last - 1)):
         row, after = seg.row[slot(paths, g, count)], seg.row[slot(paths, g, count + 1)]
-        row["junction"] = min(row["junction"], row["cap"], after["cap"])
+        row["junction"] = min(row["planned_junction"], row["cap"], after["cap"])
+    _keep_planned(seg, paths, g, first, first)
     path["planned"] = head
     _plan(seg, paths, g, dt)
     _ask_for_caps(seg, paths, g, first + 1)
     for count in range(head, min(first + 1, last) if with_jerk else head):
         k = slot(paths, g, count)
-        seg.geo[k, ASKED] = _asked_cap(seg, k, limits, path)
+        seg.geo[k, ASKED] = _asked_cap(seg, k, limits, path, seg.row[k]["cap"])
     plan_again(seg, paths, g, dt)

@@ -62,6 +62,10 @@ SEGMENT_ROW = np.dtype(
         ("full_accel", np.float64),  # path acceleration that the axes allow
         ("accel", np.float64),  # mean acceleration of its ramps
         ("junction", np.float64),  # highest speed through the end
+        # `cap` and `junction` that its corners were planned with: an override that comes too late to plan them anew
+        # lowers both, until a higher one comes.
+        ("planned_cap", np.float64),
+        ("planned_junction", np.float64),
         ("yield_before", np.float64),  # part of `accel` given up near its end, per speed through it
         ("yield_after", np.float64),  # the same of the following segment near its start
         # What its two ends keep for the rule of the path: with BY_SHARE the parts of `full_accel` that the corners
