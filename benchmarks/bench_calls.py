@@ -15,6 +15,7 @@ from typing import Any
 from _measure import Figure, at_most
 from _report import run_script
 from polycnc.controllers.fanuc import PowerMate, fwlib
+from polycnc.machine import Poll, Way
 from polycnc.servers.calls import build_library, library_of, target_here, write_library
 
 _AXES = 3
@@ -45,11 +46,25 @@ def _best_s(call: Callable[[], object], batches: int) -> float:
     return best_s
 
 
-def _facade() -> Callable[[], object]:
+def _facade(clock: Way | None = None) -> Callable[[], object]:
     session = fwlib.Session()
-    session.attach(0, PowerMate(_AXES, characters=128_000))
+    session.attach(0, PowerMate(_AXES, characters=128_000), clock)
     _, handle = session.cnc_allclibhndl()
     return lambda: session.cnc_absolute(handle, fwlib.ALL_AXES, _LENGTH)
+
+
+def _in_process(batches: int) -> Figure:
+    """Both let a cycle pass with each call, since it reads the same again."""
+    with tempfile.TemporaryDirectory() as name:
+        folder, kind = Path(name), library_of("fanuc")
+        write_library(kind, folder, in_process=True)
+        built = build_library(kind, folder, target_here(), in_process=True)
+        call, facade = _over_socket(ctypes.CDLL(str(built))), _facade(Poll(1))
+    inside_s, python_s = _best_s(call, batches), _best_s(facade, batches)
+    return at_most(
+        "C library: a call in process, as ratio to Python", inside_s / python_s, "", 1.3,
+        f"cnc_absolute and a cycle: {inside_s * 1e6:.0f} us, in Python {python_s * 1e6:.0f} us",
+    )  # fmt: skip
 
 
 def _over_socket(library: Any) -> Callable[[], object]:
@@ -104,6 +119,7 @@ def _figures(quick: bool, folder: Path, built: Path, server: int) -> list[Figure
             "C library: a call over the socket, as ratio to Python", over_s / python_s, "", 2.5,
             f"cnc_absolute: {over_s * 1e6:.0f} us, in Python {python_s * 1e6:.0f} us",
         ),
+        _in_process(batches),
         at_most("C library: a program that opens, calls and frees", first_ms, "ms", 50),
         size,
         at_most(f"C library: memory after {count} programs", _held_kb(server) - before_kb, "kB more", 2_000),

@@ -48,9 +48,7 @@ def figures(quick: bool) -> list[Figure]:
     for name, tool in TOOLS.items():
         seconds = median_s(partial(cut, wave, tool), 1 if quick else 3) / ways * 1e6
         title = f"a million ways of 0.1 mm, {name}, 6 mm, cells of 0.1 mm"
-        # A rounded corner on a slope has no closed form.
-        round_ = tool.kind is ToolKind.BULL
-        found.append(Figure(title, seconds, "s") if round_ else at_most(title, seconds, "s", MILLION_S))
+        found.append(at_most(title, seconds, "s", MILLION_S))
     seconds = median_s(lambda: Course().add(wave), 3)
     return [*found, Figure("rows of a record to chords", ways / seconds / 1e6, "M/s")]
 

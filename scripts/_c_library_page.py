@@ -18,7 +18,7 @@ is C99 on sockets; nothing else of Python or polycnc is in the program's process
 | header | C11 and C++17; the sizes and offsets of all structures are asserted when it is compiled. `PC_LONG` has 32 bits: it is `long` where that has 32, else `int` |
 | where the machine is | the environment variable `POLYCNC_CALLS=HOST:PORT`; else the line `calls = "HOST:PORT"` of `polycnc.toml` beside the program; else 127.0.0.1:{PORT} |
 | names | exported as they are, without decoration, also in 32-bit Windows libraries, whose functions are `stdcall` |
-| structures | packed as the manuals have them |
+| structures | packed as the manuals have them; for programs made with later headers of `fwlib32`, which pack to 4 bytes, the library is written with `--packing 4`. A length counts the program's bytes: ranges of macro variables are `8 + 8 * n` instead of `6 + 6 * n` |
 | clients | one connection is one program of the library, with its own handles; calls of several threads are carried out one after the other |
 | time | passes at the rate of the served machine |
 | waiting | 10 s for an answer; with `cnc_allclibhndl3` as long as the program says |
@@ -32,9 +32,38 @@ is C99 on sockets; nothing else of Python or polycnc is in the program's process
 """
 
 _TAIL = """
+## Other languages
+
+Beside the header there are declarations for programs of other languages that use the same library:
+
+| file | for | texts | records of several | null pointers |
+| --- | --- | --- | --- | --- |
+| `NAME.pas` | Delphi, Free Pascal: a unit | `PAnsiChar` | the first element | none |
+| `NAME.cs` | C#: a class of `DllImport`, `Mcug3` for `mcug3` | `string`, what is written `StringBuilder` | an array | of arrays and texts |
+| `mcug3.bas` | Visual Basic 6: a module | `String` | the first element | `vbNullString` of texts |
+
+Names are those of C. One that is a word of the language, in Pascal and Visual Basic also one that is that of a type, has a `_` behind it
+(`AS_`), in C# an `@` before it. Unions of C# are their `bytes`. A Pascal program, a C# program, and a C program that loads the library by
+name while it runs are in `examples/`.
+
+## In the program's own process
+
+`polycnc clib KIND --in-process` (Linux of 64 bits, a Python with a shared library and its headers) builds the same library with the
+machines in it: the interpreter that ran the command is loaded with the first call, `POLYCNC_PYTHON` names another one. Frames,
+answers and bytes are the same; no server is needed, and `POLYCNC_CALLS` has no effect.
+
+| what | value |
+| --- | --- |
+| machines | those of the library's kind in the file of `polycnc serve` that `POLYCNC_SERVED` names, else one as `polycnc calls KIND` has it; doors, programs, rates and scenarios of the file are left aside |
+| time | passes only when the program reads the same again in the same cycle, a cycle each time: a program that spins ends at once, one that sleeps sees no time pass, and the same calls give the same bits |
+| a fork | the child must not call the library |
+| the interpreter | does not end before the program; signals stay the program's |
+
+It is for tests and debuggers. A crash of the program takes the machine with it, and the first call takes a second or two.
+
 ## The protocol
 
-Little-endian. The library says hello: `PNCCALL1`, width of a pointer, packing (0: each structure's own), two zeros, then its
+Little-endian. The library says hello: `PNCCALL1`, width of a pointer, packing (0: as the manual has each structure), two zeros, then its
 name, its version and a hash of its table, 16 bytes each. The answer is `PNCCALL1` and a code of 4 bytes, 0 if all is well. A
 call is its length (4 bytes, of what follows), number and serial number (2 each), then the arguments: a number as it is, what
 is read behind a pointer as a size (4 bytes, 0xFFFFFFFF: null) and the bytes, what is written as the room for it. The answer is
@@ -43,8 +72,10 @@ outputs. No frame has more than 65,536 bytes. A frame that is none of these ends
 
 ## A trace
 
-`polycnc calls KIND --trace FILE` writes a line of JSON for each call: `time_s` of the machine, `call`, what went `in`, the
-`code`, what came `out`. Numbers and texts are as they are, structures hexadecimal bytes.
+`polycnc calls KIND --trace FILE` writes a line of JSON for each call: `time_s` of the machine, `client` (the first is 1), `call`,
+what went `in`, the `room` for what is written (null: a null pointer), the `code`, what came `out`. Numbers and texts are as they are,
+structures hexadecimal bytes. `polycnc calls KIND --replay FILE` carries the calls out on a new machine, at the same machine times, and
+lists those that answer otherwise; status 1 if there are any.
 
 ## What a program needs
 
@@ -56,7 +87,7 @@ refused.
 
 ## What there is not
 
-No library in the process (the interpreter is never loaded into the program), no 4-byte packing of later headers, no routine
+No routine
 of the program that an interrupt calls, no booting of a served board. Functions that no manual of these systems has are not
 exported: the loader names them.
 """

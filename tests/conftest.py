@@ -15,12 +15,14 @@ import pytest
 from hypothesis import settings
 
 from polycnc import conformance
+from support.often import ALL_CASES
 
 REPOSITORY = Path(__file__).resolve().parents[1]
 
 os.environ["MPLBACKEND"] = "Agg"
-settings.register_profile("polycnc", deadline=None, max_examples=60, derandomize=True, database=None)
-settings.load_profile("polycnc")
+for name, examples in (("some cases", 30), ("all cases", 60)):
+    settings.register_profile(name, deadline=None, max_examples=examples, derandomize=True, database=None)
+settings.load_profile("some cases")
 
 # What tests may lack: a word of the reason they give, and what to do about it.
 HOW_TO_GET = {
@@ -73,6 +75,12 @@ def pytest_addoption(parser: pytest.Parser) -> None:
     parser.addoption("--update-goldens", action="store_true", help="write the golden texts anew")
 
 
+def pytest_configure(config: pytest.Config) -> None:
+    if config.getoption("markexpr") not in ("", "not long"):
+        os.environ[ALL_CASES] = "1"
+        settings.load_profile("all cases")
+
+
 @pytest.hookimpl(tryfirst=True)  # before -k and -m take tests away
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
     known = conformance.read_rows(conformance.data_folder())
@@ -82,8 +90,8 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
     for item in items:
         claimed = [row for mark in item.iter_markers("covers") for row in mark.args]
         found = [text for row in claimed if (text := conformance.invalid_claim(row, known, not_applicable))]
-        if claimed and not conformance.asserts_something(item.function):  # type: ignore[attr-defined]
-            found.append("covers marks a test whose body asserts nothing")
+        if claimed and config.getoption("claims_file"):  # else before the test, in the process that runs it
+            found += _asserts_nothing(item)
         if found:
             item.stash[_problem_key] = "\n".join(found)
             problems.append(f"{item.nodeid}: {found[0]}")
@@ -100,6 +108,14 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
 def pytest_runtest_setup(item: pytest.Item) -> None:
     if problem := item.stash.get(_problem_key, ""):
         pytest.fail(problem, pytrace=False)
+    if item.get_closest_marker("covers") and (problems := _asserts_nothing(item)):
+        pytest.fail(problems[0], pytrace=False)
+
+
+def _asserts_nothing(item: pytest.Item) -> list[str]:
+    if conformance.asserts_something(item.function):  # type: ignore[attr-defined]
+        return []
+    return ["covers marks a test whose body asserts nothing"]
 
 
 def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter) -> None:

@@ -5,14 +5,24 @@ from __future__ import annotations
 import pytest
 
 from polycnc.errors import ConfigurationError, ProgramError
-from support.post_cases import Case, blocks_of, cases
+from support.post_cases import Case, blocks_of, cases, check_every_way, rows_of
 
 CASES = list(cases())
 
 
+def shown_by(case: Case) -> list[str]:
+    """Return the rows that the statements of a case show; a refused one shows no more than it says."""
+    if "error" in case.parts:
+        return []
+    return rows_of(*case.part("setup"), *case.part("macro"), place=case.place)
+
+
 @pytest.mark.parametrize(
     "case",
-    [pytest.param(case, id=case.name, marks=pytest.mark.covers(*case.part("covers"))) for case in CASES],
+    [
+        pytest.param(case, id=case.name, marks=pytest.mark.covers(*{*case.part("covers"), *shown_by(case)}))
+        for case in CASES
+    ],
 )
 def test_worked_case(case: Case) -> None:
     macros = ["\n".join(case.part("setup")), "\n".join(case.part("macro"))]
@@ -26,6 +36,7 @@ def test_worked_case(case: Case) -> None:
         assert [f"{error.value.position.column}: {line}"] == case.part("error")
     else:
         assert blocks_of(*macros, words=words, sequence_place=case.place) == case.parts["gives"]
+        check_every_way(*macros, words=words, sequence_place=case.place)
 
 
 def test_all_cases_are_there() -> None:

@@ -8,6 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from polycnc.controllers.apci import sap
+from support.often import share
 from support.sap_board import FakeBoard, run_text
 
 _32_BITS = 1 << 32
@@ -42,7 +43,7 @@ def integers(draw: st.DrawFn, depth: int = 4) -> tuple[str, int]:
     return f"({left_text} {operator} {right_text})", _wrapped(results[operator])
 
 
-@settings(max_examples=100)
+@settings(max_examples=share(100))
 @given(expression=integers())
 def test_integer_expressions_are_what_python_says(expression: tuple[str, int]) -> None:
     text, value = expression
@@ -54,7 +55,7 @@ def test_integer_expressions_are_what_python_says(expression: tuple[str, int]) -
 _OPERANDS = st.integers(0, 19).map(str) | st.sampled_from(["1.5", "2.25", "1e3"])
 
 
-@settings(max_examples=100)
+@settings(max_examples=share(100))
 @given(
     operands=st.lists(_OPERANDS, min_size=2, max_size=6),
     operators=st.lists(st.sampled_from("+-*"), min_size=5, max_size=5),
@@ -71,7 +72,7 @@ def test_precedence_without_brackets_is_python_s(
     assert board.system["cd", 0] == exact
 
 
-@settings(max_examples=100)
+@settings(max_examples=share(100))
 @given(
     values=st.lists(st.integers(-3, 3), min_size=4, max_size=4),
     operators=st.lists(st.sampled_from(["and", "or"]), min_size=3, max_size=3),
@@ -107,7 +108,7 @@ END.
 """
 
 
-@settings(max_examples=40)
+@settings(max_examples=share(40))
 @given(values=st.lists(st.integers(-99, 99), max_size=12), budget=st.integers(1, 60))
 def test_a_program_does_the_same_however_it_is_cut_into_scans(values: list[int], budget: int) -> None:
     board = FakeBoard()
@@ -132,7 +133,7 @@ array integer double boolean and or not div mod shl := ; . , : ( ) [ ] .. = < + 
 _PIECES = [*_WORDS.split(), "// comment\n", "'"]
 
 
-@settings(max_examples=100)
+@settings(max_examples=share(100))
 @given(pieces=st.lists(st.sampled_from(_PIECES), max_size=60) | st.text(max_size=60).map(lambda text: [text]))
 def test_any_text_is_compiled_or_refused_with_a_place(pieces: list[str]) -> None:
     text = " ".join(pieces)

@@ -23,6 +23,7 @@ from polycnc.nc.text._place import Place
 from polycnc.nc.text._scan import PERCENT, scan_rules
 from polycnc.nc.text._scan_plain import Block, scan_block
 from support.block_strategies import programs
+from support.often import share
 from support.programs import FIVE, channel_state, queue_bytes
 
 FANUC = load_dialect("fanuc")
@@ -50,7 +51,7 @@ def fill(channel: Channel, blocks: int | None = None, *, compiled: bool = True) 
     channel.fill(blocks, compiled=compiled)
 
 
-@settings(max_examples=60)
+@settings(max_examples=share(60))
 @given(st.one_of(programs, with_calls), portions, st.sampled_from([0, 3, 1000]))
 def test_the_portions_in_which_blocks_are_prepared_do_not_matter(
     program: str, sizes: list[tuple[int, bool]], ordinary_blocks: int
@@ -87,7 +88,7 @@ def said(read: Callable[[], Block | EndSource | None]) -> object:
     return block if isinstance(block, Block) else None
 
 
-@settings(max_examples=60)
+@settings(max_examples=share(60))
 @given(programs, st.data())
 def test_a_reader_gives_the_blocks_of_a_text_from_any_line_on(program: str, data: st.DataObject) -> None:
     text = ProgramText.from_text(program, "t.nc")

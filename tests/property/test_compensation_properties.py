@@ -16,6 +16,7 @@ from hypothesis import strategies as st
 from polycnc.nc.blocks._compensation import RadiusCompensation, Side
 from polycnc.nc.blocks._compensation_errors import CompensationError
 from polycnc.nc.blocks._moves import Arc, Feed, Line, Move, QueueItem
+from support.often import share
 
 Outer = Literal["arc", "intersection"]
 Floats = npt.NDArray[np.float64]
@@ -169,25 +170,25 @@ def check(contour: Contour, side: Side, outer: Outer) -> None:
     assert each.min(axis=1) == pytest.approx(np.full(len(programmed), contour.radius), abs=1e-9)
 
 
-@settings(deadline=None, max_examples=60)
+@settings(deadline=None, max_examples=share(60))
 @given(contours(convex=True, arcs=False), st.sampled_from(Side), st.sampled_from(["arc", "intersection"]))
 def test_convex_polygons(contour: Contour, side: Side, outer: Outer) -> None:
     check(contour, side, outer)
 
 
-@settings(deadline=None, max_examples=60)
+@settings(deadline=None, max_examples=share(60))
 @given(contours(convex=False, arcs=False), st.sampled_from(Side), st.sampled_from(["arc", "intersection"]))
 def test_star_shaped_polygons(contour: Contour, side: Side, outer: Outer) -> None:
     check(contour, side, outer)
 
 
-@settings(deadline=None, max_examples=100)
+@settings(deadline=None, max_examples=share(100))
 @given(contours(convex=False, arcs=True), st.sampled_from(Side), st.sampled_from(["arc", "intersection"]))
 def test_contours_with_arcs(contour: Contour, side: Side, outer: Outer) -> None:
     check(contour, side, outer)
 
 
-@settings(deadline=None, max_examples=40)
+@settings(deadline=None, max_examples=share(40))
 @given(contours(convex=False, arcs=True), st.sampled_from(Side))
 def test_left_and_right_mirror_each_other(contour: Contour, side: Side) -> None:
     other = Side.RIGHT if side is Side.LEFT else Side.LEFT
@@ -201,13 +202,13 @@ def test_left_and_right_mirror_each_other(contour: Contour, side: Side) -> None:
             assert one.sweep_rad == pytest.approx(-two.sweep_rad, abs=1e-9)
 
 
-@settings(deadline=None, max_examples=30)
+@settings(deadline=None, max_examples=share(30))
 @given(contours(convex=False, arcs=True), st.sampled_from(Side))
 def test_radius_zero_changes_nothing(contour: Contour, side: Side) -> None:
     assert compensate(Contour(contour.moves, 0.0), side) == contour.moves
 
 
-@settings(deadline=None, max_examples=30)
+@settings(deadline=None, max_examples=share(30))
 @given(contours(convex=False, arcs=True), st.sampled_from(Side), st.data())
 def test_pieces_on_the_same_path_change_nothing(contour: Contour, side: Side, data: st.DataObject) -> None:
     """Cutting a line in two leaves the compensated path as it is."""
@@ -255,7 +256,7 @@ def grid_paths(draw: st.DrawFn) -> list[Move]:
     return moves
 
 
-@settings(deadline=None, max_examples=100)
+@settings(deadline=None, max_examples=share(100))
 @given(
     grid_paths(),
     st.sampled_from([0.5, 1.0, 2.0, 5.0]),

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import math
+from itertools import product
 
 import numpy as np
 import numpy.typing as npt
 import pytest
 
 from polycnc.kernel import KernelState, append_arc, append_line, give_to_path, make_state, skip, start_path
+from support.often import often
 from support.random_paths import (
     CYCLE_S,
     PathSettings,
@@ -62,8 +64,10 @@ def time_of(state: KernelState) -> float:
     return skip(state, 0, int(state.paths.row[0]["tail"])) * CYCLE_S
 
 
-@pytest.mark.parametrize("settings", SETTINGS, ids=str)
-@pytest.mark.parametrize("length", [None, 0.0002, 0.002, 0.05, 1.0])
+LENGTHS = (None, 0.0002, 0.002, 0.05, 1.0)
+
+
+@pytest.mark.parametrize(("settings", "length"), often(list(product(SETTINGS, LENGTHS)), 11))
 def test_going_on_is_never_slower_than_stopping_at_every_block(
     settings: PathSettings, length: float | None
 ) -> None:

@@ -12,6 +12,7 @@ from hypothesis import strategies as st
 from polycnc.errors import ProgramError
 from polycnc.nc import ProgramText
 from polycnc.runner import RunResult, run
+from support.often import share
 from support.programs import MILL
 
 _NUMBERS = re.compile(r"(?<=[A-MO-Z])[0-9.-]+(?![^(]*\))")
@@ -51,7 +52,7 @@ def _run(blocks: list[str], root: Path) -> RunResult | str:
         return error.what
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=share(60), deadline=None)
 @given(st.lists(_blocks(), min_size=1, max_size=4), st.data())
 def test_a_number_in_brackets_is_that_number(
     tmp_path_factory: pytest.TempPathFactory, blocks: list[str], data: st.DataObject

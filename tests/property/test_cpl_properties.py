@@ -14,6 +14,7 @@ from hypothesis import strategies as st
 from polycnc.errors import ProgramError
 from polycnc.nc.cpl import Linker, Run
 from support.cpl_host import Ran, RecordingHost
+from support.often import share
 
 # Expressions: a node is (text, power of its loosest operator, how its value is computed, type)
 
@@ -89,7 +90,7 @@ NUMERIC = st.recursive(
 
 
 @given(node=NUMERIC, double=st.booleans())
-@settings(deadline=None, max_examples=300)
+@settings(deadline=None, max_examples=share(300))
 def test_numbers_are_reckoned_in_the_precision_of_their_expression(node: Node, double: bool) -> None:
     real = np.float64 if double else np.float32
     try:
@@ -104,7 +105,7 @@ def test_numbers_are_reckoned_in_the_precision_of_their_expression(node: Node, d
 
 
 @given(left=NUMERIC, right=NUMERIC, sign=st.sampled_from(sorted(RELATIONS)))
-@settings(deadline=None, max_examples=100)
+@settings(deadline=None, max_examples=share(100))
 def test_comparisons_compare_single_precision(left: Node, right: Node, sign: str) -> None:
     try:
         with np.errstate(over="raise"):
@@ -231,7 +232,7 @@ class Slow:
 
 @pytest.mark.parametrize("apart", [False, True])
 @given(flow=BODY)
-@settings(deadline=None, max_examples=60)
+@settings(deadline=None, max_examples=share(60))
 def test_structures_run_as_a_slow_interpreter_walks_them(apart: bool, flow: Flow) -> None:
     writer = Writer(apart)
     writer.put("S%=1")
@@ -254,7 +255,7 @@ WORDS = (
 
 
 @given(st.lists(st.sampled_from(WORDS), max_size=25), st.sampled_from(("", " ")))
-@settings(deadline=None, max_examples=400)
+@settings(deadline=None, max_examples=share(400))
 def test_any_text_runs_or_is_refused_with_its_place(words: list[str], blank: str) -> None:
     text = "1 " + blank.join(words)
     host = RecordingHost(

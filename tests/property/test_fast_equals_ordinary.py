@@ -15,6 +15,7 @@ from polycnc.nc.channel._options import ChannelOptions
 from polycnc.nc.channel._reader import Reader
 from polycnc.nc.channel._running import Running
 from support.block_strategies import half_circles, modes, programs, straight
+from support.often import share
 from support.programs import (
     FIVE,
     LINEAR,
@@ -53,7 +54,7 @@ def assert_same(fast: Channel, ordinary: Channel) -> None:
 
 
 @pytest.mark.parametrize("dialect", DIALECTS)
-@settings(max_examples=40, suppress_health_check=[HealthCheck.too_slow])
+@settings(max_examples=share(40), suppress_health_check=[HealthCheck.too_slow])
 @given(program=programs)
 @example(program="G2 X10 I5\nG91 G3 X10 J-0 I5\nX1\n")
 @example(program="G1 F500\n X0 F100\nG92 X1 Y2\nG91 G2 X2 I1\n")
@@ -64,13 +65,13 @@ def test_shipped_dialects(dialect: str, program: str) -> None:
     assert_same(*both(program, dialect, collect_errors=True))
 
 
-@settings(max_examples=50, suppress_health_check=[HealthCheck.too_slow])
+@settings(max_examples=share(50), suppress_health_check=[HealthCheck.too_slow])
 @given(programs, st.sampled_from([INCREMENTS, BLENDED]))
 def test_other_settings(program: str, dialect: Dialect) -> None:
     assert_same(*both(program, dialect, collect_errors=True))
 
 
-@settings(max_examples=50, suppress_health_check=[HealthCheck.too_slow])
+@settings(max_examples=share(50), suppress_health_check=[HealthCheck.too_slow])
 @given(programs)
 def test_both_stop_at_the_same_error(program: str) -> None:
     assert_same(*both(program, "din", collect_errors=False))
@@ -119,11 +120,11 @@ def recorded(channel: Channel) -> list[object]:
     tags = channel.machine.state.seg.row["tag"][:tail].tolist()
     marks = channel.writer.marks or ()
     records = [channel.records.block(tag) for tag in [*tags, *(tag for _, tag in marks)]]
-    said = [[tag and bool(channel.records.spindle_turns(np.array([tag]))[0]) for tag in tags]]
+    said = [[tag and float(channel.records.spindle_turns(np.array([tag]))[0]) for tag in tags]]
     return [said, [count for count, _ in marks], *((each.line, each.modal) for each in records if each)]
 
 
-@settings(max_examples=60, suppress_health_check=[HealthCheck.too_slow])
+@settings(max_examples=share(60), suppress_health_check=[HealthCheck.too_slow])
 @given(
     st.sampled_from([FIVE, LASER, ROUNDED]),
     st.sampled_from(["grbl", "din", "linuxcnc", "fanuc-lathe"]),

@@ -12,6 +12,7 @@ from polycnc.controllers.imc import imclib as lib
 from polycnc.controllers.imc.card._card import Card
 from polycnc.controllers.library import Pointer
 from support.imc_network import opened
+from support.often import share
 
 FUNCTIONS = [
     name
@@ -81,7 +82,7 @@ def arguments(name: str) -> st.SearchStrategy[tuple[Any, ...]]:
 CALLS = st.sampled_from(FUNCTIONS).flatmap(lambda name: st.tuples(st.just(name), arguments(name)))
 
 
-@settings(max_examples=100)
+@settings(max_examples=share(100))
 @given(st.lists(CALLS, min_size=1, max_size=30))
 def test_calls_answer_and_refused_ones_change_nothing(calls: list[tuple[str, tuple[Any, ...]]]) -> None:
     card = Card()

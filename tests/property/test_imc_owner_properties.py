@@ -11,6 +11,7 @@ from polycnc.controllers.imc.core._homing import home_sequence
 from polycnc.controllers.imc.core._instructions import WriteMany
 from polycnc.controllers.imc.core._parameters import address
 from support.imc_card import FLAG, IFIFO, enable_path, line, ready_card, send, setting
+from support.often import share
 
 SLAVE = 1
 GEAR = {"master": 0, "gearsrc": address("curvel"), "syntype": 0}
@@ -72,7 +73,7 @@ def check(card: Card) -> None:
     assert (card.read("moving", SLAVE) != 0) >= (card.read("curvel", SLAVE) != 0)
 
 
-@settings(max_examples=60)
+@settings(max_examples=share(60))
 @given(STEPS)
 def test_flags_say_what_an_axis_does_and_its_speed_never_jumps(steps: list[tuple[int, int]]) -> None:
     card = ready_card("[[axis]]\n[[axis]]\norigin = [700.0, 760.0]\n")

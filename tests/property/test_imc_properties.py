@@ -30,6 +30,7 @@ from support.imc_card import (
     set_now,
     setting,
 )
+from support.often import share
 
 PRINT_DIGEST = "from property.test_imc_properties import digest; print(digest())"
 WORLD = """
@@ -131,7 +132,7 @@ MOVES = st.lists(
 )
 
 
-@settings(deadline=None, max_examples=60)
+@settings(deadline=None, max_examples=share(60))
 @given(MOVES, st.integers(0, 40))
 def test_what_both_systems_move_is_what_the_axis_moves(
     moves: list[tuple[str, int, int]], smooth: int

@@ -216,6 +216,6 @@ def test_a_merged_line_counts_as_the_last_of_its_blocks() -> None:
     seen: list[int] = []
     while run.active:
         run.advance(1)
-        if run.executed is not None and run.executed.line not in seen[-1:]:
-            seen.append(run.executed.line)
+        if run.reading.block is not None and run.reading.block.line not in seen[-1:]:
+            seen.append(run.reading.block.line)
     assert seen == [9, 10, 11, 12]  # the line of eight blocks counts as the last of them

@@ -27,8 +27,8 @@ from support.runs import program_run
 
 Floats = npt.NDArray[np.float64]
 LINES = 14
-MORE_SEEDS = [pytest.param(seed, marks=pytest.mark.long) for seed in range(2, 15)]
-SEEDS = pytest.mark.parametrize("seed", [0, 1, *MORE_SEEDS])
+MORE_SEEDS = [pytest.param(seed, marks=pytest.mark.long) for seed in range(1, 15)]
+SEEDS = pytest.mark.parametrize("seed", [0, *MORE_SEEDS])
 CONFIGS = pytest.mark.parametrize(
     "config", [SHARP, JERK, SHORT, SOFT, ROUND], ids=["sharp", "jerk", "short", "soft", "round"]
 )
@@ -53,7 +53,7 @@ def chunks(program: str, rng: np.random.Generator) -> list[bytes]:
 
 def put(run: ProgramRun, text: IncomingText, data: bytes) -> None:
     text.put(text.arrived(data))
-    run.has_come()
+    run.feed.wake()
 
 
 def trace(run: ProgramRun, cycles: int) -> list[list[float]]:
@@ -104,8 +104,8 @@ def test_a_starved_run_rests_on_the_path_and_keeps_every_limit(seed: int, config
                 found += trace(run, int(rng.integers(1, 300)))
                 run.start()
             case 1:
-                run.feed_override = float(rng.choice((0.13, 0.5, 1.0, 1.7)))
-    run.feed_override = 1.0
+                run.overrides.feed = float(rng.choice((0.13, 0.5, 1.0, 1.7)))
+    run.overrides.feed = 1.0
     while run.active:
         found += trace(run, 1000)
     points = np.array(found)
@@ -135,7 +135,7 @@ def test_time_cut_elsewhere_makes_no_difference(seed: int, config: MachineConfig
             left = cycles
             while left and run.active:
                 left -= run.advance(min(cut, left))
-            row.append((run.machine.state.setpoint.tolist(), run.executed_tag, run.starved))
+            row.append((run.machine.state.setpoint.tolist(), run.reading.tag, run.starved))
         while run.active:
             run.advance(cut if cut > 1 else 50)
         ends.append((row, run.machine.clock.cycles if cut != 1 else None, run.machine.setpoints))

@@ -8,6 +8,7 @@ from hypothesis import strategies as st
 
 from polycnc.errors import ConfigurationError, ProgramError
 from polycnc.post import parse_control
+from support.often import share
 from support.post_cases import control_with
 from support.post_models import MACROS, Node, Slow, macro_text
 
@@ -35,7 +36,7 @@ def test_compiled_macros_write_what_a_slow_interpreter_writes(
 
 
 @given(st.text(alphabet="!$@&<>\"',*-+/=()|.0159AGXxIFELSND \n\té", max_size=60))
-@settings(deadline=None, max_examples=100)
+@settings(deadline=None, max_examples=share(100))
 def test_any_text_is_a_macro_or_refused_with_its_place(macro: str) -> None:
     if "''" in macro or macro.endswith("'"):
         macro = macro.replace("'", "")

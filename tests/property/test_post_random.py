@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 
 from polycnc.post import parse_tool_path
 from polycnc.runner import post_file
+from support.often import share
 from support.post_controls import control
 
 DECIMALS = 5  # so that rounding stays far below the tolerance
@@ -126,7 +127,7 @@ def controls(draw: st.DrawFn) -> Settings:
     return parameters, macros
 
 
-@settings(max_examples=40)
+@settings(max_examples=share(40))
 @given(tool_paths(), controls())
 def test_the_machine_sweeps_what_the_tool_path_means(text: str, settings: Settings) -> None:
     used = control(*settings, decimals=DECIMALS)
@@ -152,7 +153,7 @@ def test_shipped_control_files_keep_their_rounding(text: str, name: str) -> None
     assert result.ok, (name, proof.off_path, proof.missed, result.text)
 
 
-@settings(max_examples=40)
+@settings(max_examples=share(40))
 @given(tool_paths())
 def test_posting_twice_gives_the_same_text(text: str) -> None:
     used = control()

@@ -31,6 +31,7 @@ from polycnc.kernel._profile_shape import (
     profile_at,
     profile_duration,
 )
+from support.often import share
 
 Floats = npt.NDArray[np.float64]
 
@@ -101,7 +102,7 @@ def end_of(row: Floats) -> tuple[float, float]:
     )
 
 
-@settings(deadline=None, max_examples=100)
+@settings(deadline=None, max_examples=share(100))
 @given(states(), POLICIES)
 @example(TINY, SHORT_OVERSHOOT)
 @example(TINY._replace(target=5e-324), SHORT_OVERSHOOT)
@@ -128,7 +129,7 @@ def test_phases_join_and_stay_within_the_limits(state: State, policy: int) -> No
             assert abs(velocity - following[VELOCITY]) <= 1e-12 * fastest or following[DURATION] == 0.0
 
 
-@settings(deadline=None, max_examples=100)
+@settings(deadline=None, max_examples=share(100))
 @given(states(), POLICIES)
 def test_the_start_and_the_end_are_exact(state: State, policy: int) -> None:
     phases, count = planned(state, policy)
@@ -149,7 +150,7 @@ def test_the_start_and_the_end_are_exact(state: State, policy: int) -> None:
         assert tuple(phases[0, [POSITION, VELOCITY]]) == (state.start, state.v0)
 
 
-@settings(deadline=None, max_examples=100)
+@settings(deadline=None, max_examples=share(100))
 @given(states(), POLICIES)
 def test_velocities_step_only_where_the_policy_says(state: State, policy: int) -> None:
     phases, count = planned(state, policy)
@@ -168,7 +169,7 @@ def test_velocities_step_only_where_the_policy_says(state: State, policy: int) -
         assert abs(arrival - math.copysign(state.vmax, state.v1)) <= tolerance
 
 
-@settings(deadline=None, max_examples=100)
+@settings(deadline=None, max_examples=share(100))
 @given(states(), POLICIES)
 def test_the_mirrored_wish_is_the_mirrored_profile(state: State, policy: int) -> None:
     phases, count = planned(state, policy)
@@ -183,7 +184,7 @@ def test_the_mirrored_wish_is_the_mirrored_profile(state: State, policy: int) ->
         assert abs(position + reflection) <= 1e-12 * size
 
 
-@settings(deadline=None, max_examples=100)
+@settings(deadline=None, max_examples=share(100))
 @given(states(), st.floats(0.0, 1.0))
 def test_a_bent_profile_meets_the_straight_one_at_every_ramp_end(state: State, jerkrel: float) -> None:
     straight, straight_count = planned(state._replace(jerkrel=0.0))
@@ -200,7 +201,7 @@ def test_a_bent_profile_meets_the_straight_one_at_every_ramp_end(state: State, j
         time_s += row[DURATION]
 
 
-@settings(deadline=None, max_examples=100)
+@settings(deadline=None, max_examples=share(100))
 @given(states(), st.floats(0.0, 1.0))
 def test_planning_again_on_the_way_does_not_change_the_time(state: State, fraction: float) -> None:
     """A part of an optimal profile is optimal: also the test that no branch is chosen wrongly."""
@@ -220,7 +221,7 @@ def test_planning_again_on_the_way_does_not_change_the_time(state: State, fracti
     assert abs(time_s + profile_duration(rest, rest_count) - duration) <= slack
 
 
-@settings(deadline=None, max_examples=100)
+@settings(deadline=None, max_examples=share(100))
 @given(numbers(1e9), numbers(1e4), st.one_of(st.just(0.0), positives(1e-2, 1e6)), st.floats(-1.0, 2.0))
 def test_a_stop_comes_to_rest_where_its_end_row_says(
     start: float, v0: float, dec: float, jerkrel: float

@@ -25,12 +25,13 @@ from polycnc.kernel._ramps import (
     set_one_piece,
     set_pieces,
 )
+from support.often import share
 
 speeds = st.one_of(st.just(0.0), st.floats(1e-3, 1e3))
 positive = st.floats(1e-3, 1e3)
 
 
-@settings(max_examples=300)
+@settings(max_examples=share(300))
 @given(
     speed_in=speeds,
     length=positive,
@@ -72,7 +73,7 @@ def test_a_segment_is_gone_along_once_and_within_its_limits(
     assert np.all(np.abs(np.diff(planned)) <= step * (1.0 + 1e-6) + 1e-9 * fastest)
 
 
-@settings(max_examples=300)
+@settings(max_examples=share(300))
 @given(
     speed_in=speeds,
     length=positive,

@@ -18,6 +18,7 @@ from polycnc.nc.blocks._channel_state import ChannelState
 from polycnc.nc.blocks._interpreter import Interpreter
 from polycnc.nc.modal._modal import changing
 from support.block_strategies import programs
+from support.often import share
 from support.programs import FIVE, channel_state, prepare, queue_bytes
 
 
@@ -27,7 +28,7 @@ def refused_lines(channel: Channel) -> set[int]:
 
 
 @pytest.mark.parametrize("dialect", DIALECTS)
-@settings(max_examples=40, suppress_health_check=[HealthCheck.too_slow])
+@settings(max_examples=share(40), suppress_health_check=[HealthCheck.too_slow])
 @given(program=programs)
 def test_without_its_refused_blocks_a_program_does_the_same(dialect: str, program: str) -> None:
     whole = prepare(program, config=FIVE, dialect=dialect, collect_errors=True)

@@ -13,6 +13,7 @@ from polycnc.errors import ProgramError
 from polycnc.nc.text._program import ProgramText, TextRules
 from polycnc.nc.text._scan import BAD, OVERSIZE, STATEMENT, WordColumns, scan, scan_rules, word_columns
 from polycnc.nc.text._scan_plain import Block, scan_block
+from support.often import share
 
 PLAIN_RULES = TextRules()
 CPL_RULES = TextRules(
@@ -154,20 +155,20 @@ def _is_long(text: ProgramText, place: int) -> bool:
 
 
 @example("N. (note)\n", PLAIN_RULES, (1, 4))
-@settings(max_examples=100)
+@settings(max_examples=share(100))
 @given(programs, st.sampled_from(ALL_RULES), st.sampled_from([(1, 4), (3, 7), (64, 512)]))
 def test_both_scanners_read_the_same(program: str, rules: TextRules, size: tuple[int, int]) -> None:
     assert_same(ProgramText.from_text(program.encode("latin-1")), rules, word_columns(*size))
 
 
-@settings(max_examples=100)
+@settings(max_examples=share(100))
 @given(st.binary(max_size=60), st.sampled_from(ALL_RULES))
 def test_any_bytes(content: bytes, rules: TextRules) -> None:
     if content[:2] not in (b"\xff\xfe", b"\xfe\xff"):
         assert_same(ProgramText.from_text(content), rules, word_columns(8, 16))
 
 
-@settings(max_examples=50)
+@settings(max_examples=share(50))
 @given(st.lists(words, min_size=1, max_size=30).map(" ".join))
 def test_values_are_those_of_float(line: str) -> None:
     columns = word_columns(2, 64)

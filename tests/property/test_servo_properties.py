@@ -13,10 +13,11 @@ from hypothesis import strategies as st
 from polycnc.kernel._plant import make_plant, measured, plant_cycle, plant_place
 from polycnc.kernel._servo import PIDF, make_servo, servo_cycle
 from polycnc.kernel._switches import index_crossings
+from support.often import share
 
 DT = 1e-3
 
-some = settings(deadline=None, max_examples=60)
+some = settings(deadline=None, max_examples=share(60))
 
 
 def between(low: float, high: float) -> st.SearchStrategy[float]:

@@ -39,21 +39,21 @@ def _hold_and_start(run: ProgramRun) -> None:
 
 
 def _off_and_on(run: ProgramRun) -> None:
-    run.single_block = False
-    run.single_block = True
+    run.switches.single_block = False
+    run.switches.single_block = True
 
 
 def _breakpoint(run: ProgramRun) -> None:
-    run.breakpoints = {*run.breakpoints, Breakpoint("elsewhere.nc", 77)}
+    run.switches.breakpoints = {*run.switches.breakpoints, Breakpoint("elsewhere.nc", 77)}
 
 
 def _override(run: ProgramRun) -> None:
-    run.feed_override = 0.75
-    run.feed_override = 1.0
+    run.overrides.feed = 0.75
+    run.overrides.feed = 1.0
 
 
 def _optional_stop(run: ProgramRun) -> None:
-    run.optional_stop = not run.optional_stop
+    run.switches.optional_stop = not run.switches.optional_stop
 
 
 ACTS: dict[str, Callable[[ProgramRun], None]] = {
@@ -70,7 +70,7 @@ def stops(
 ) -> tuple[list[Stop], float]:
     """Return where a program in single block stands, acts being done in their cycles, and its highest acceleration."""
     run = program_run(text, config, single_block=True)
-    run.feed_override = override
+    run.overrides.feed = override
     run.start()
     state = run.machine.state
     points, found = [state.setpoint.copy()], []

@@ -147,7 +147,7 @@ def test_a_macro_program_goes_on_from_any_cycle(tmp_path: Path, seeds: range) ->
         while rig.run.active or rig.run.state is RunState.PROGRAM_STOP:
             rig.go(chance.randrange(1, _STEP))
             taken.append((rig.kept(), len(rig.printed)))
-            within += bool(rig.run.stack)
+            within += bool(rig.run.reading.stack)
             stops += rig.run.state is RunState.PROGRAM_STOP
         printed, wanted = bytes(rig.printed), rig.end()
         assert rig.run.state is RunState.COMPLETED, f"seed {seed}: {rig.run.error}"
@@ -182,7 +182,7 @@ def test_a_cpl_program_goes_on_from_any_cycle(seeds: range) -> None:
             rig.go(pieces[-1])
             if rig.cpl.running:  # permanent variables are durable, and in a snapshot only as long
                 taken.append((rig.kept(), len(pieces)))
-            within += bool(rig.run.stack)
+            within += bool(rig.run.reading.stack)
             waits += any(source.waits for source in rig.cpl.running)
         wanted = rig.end()
         assert rig.run.state is RunState.COMPLETED, f"seed {seed}: {rig.run.error}"
@@ -227,9 +227,9 @@ def in_the_middle(folder: Path) -> tuple[Rig, tuple[bytes, bytes]]:
     rig.run.start()
     for _ in range(1000):
         rig.go(7)
-        if rig.run.stack and rig.language.variables.locals_of(0)[1] == 2.0:
+        if rig.run.reading.stack and rig.language.variables.locals_of(0)[1] == 2.0:
             break
-    assert rig.run.stack
+    assert rig.run.reading.stack
     return rig, rig.kept()
 
 
@@ -265,8 +265,8 @@ def test_a_program_goes_on_in_another_process(tmp_path: Path) -> None:
 @pytest.mark.parametrize("name", ["main.nc", "called"])
 def test_a_program_that_has_been_changed_is_refused(tmp_path: Path, name: str) -> None:
     rig, kept = in_the_middle(tmp_path)
-    assert rig.run.executed is not None
-    path = tmp_path / (Path(rig.run.executed.program).name if name == "called" else name)
+    assert rig.run.reading.block is not None
+    path = tmp_path / (Path(rig.run.reading.block.program).name if name == "called" else name)
     other = Rig(tmp_path / "main.nc")
     path.write_text(path.read_text().replace("#100=#100+1", "#100=#100+2") + "(CHANGED)\n")
     before = other.kept()

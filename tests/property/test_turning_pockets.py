@@ -17,6 +17,7 @@ from hypothesis import strategies as st
 
 from polycnc.nc.blocks._turning import Piece, Roughing, Step, TurningError, exchanged, rough
 from polycnc.nc.blocks._turning_pockets import rough_pockets
+from support.often import share
 
 Floats = npt.NDArray[np.float64]
 GRID = 4001
@@ -108,14 +109,14 @@ def outlines(draw: st.DrawFn) -> tuple[list[Piece], Roughing]:
     return contour_of(points), numbers
 
 
-@settings(max_examples=100, deadline=None)
+@settings(max_examples=share(100), deadline=None)
 @given(outlines(), st.booleans())
 def test_no_pass_cuts_the_part_or_too_deep(case: tuple[list[Piece], Roughing], rapid: bool) -> None:
     contour, numbers = case
     check_material(contour, numbers, rough_pockets(contour, numbers, first_rapid=rapid), -1.0)
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=share(60), deadline=None)
 @given(outlines())
 def test_bores_are_the_same_from_the_other_side(case: tuple[list[Piece], Roughing]) -> None:
     contour, numbers = case

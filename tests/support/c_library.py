@@ -68,9 +68,11 @@ class _StandingWall:
 class Door:
     """Machines with the door `calls`, in a thread; no time passes by itself, unless they are running."""
 
-    def __init__(self, *machines: tuple[str, Machinery], focas: bool = False, running: bool = False) -> None:
+    def __init__(
+        self, *machines: tuple[str, Machinery], focas: bool = False, running: bool = False, port: int = 0
+    ) -> None:
         self._ready = threading.Event()
-        self._machines, self._focas, self._running = machines, focas, running
+        self._machines, self._focas, self._running, self._port = machines, focas, running, port
         self._loop: asyncio.AbstractEventLoop | None = None
         self._end: asyncio.Event | None = None
         self.devices: Sequence[Device[Any]] = ()
@@ -88,7 +90,7 @@ class Door:
         wall = WallClock() if self._running else _StandingWall()
         serving = Serving(wall, Log(), lambda _: None)
         try:
-            await serving.open(wanted, [(DOORS["calls"], at)])
+            await serving.open(wanted, [(DOORS["calls"], Wanted(port=self._port))])
             self.devices = [each.device for each in serving.machines]
             self._door = serving.doors[-1][1]
             self.place, self.first_place = serving.doors[-1][1].said, serving.doors[0][1].said

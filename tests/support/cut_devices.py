@@ -55,7 +55,12 @@ CALLED = "#2=#2+1\nWHILE[#1GT0]DO1\n#1=#1-1\nIF[#1GT12]GOTO5\nG91 G1 Y#2 F3000\n
 
 
 def _cpl_program(rng: random.Random, x: str, y: str) -> str:
-    lines = ["1 I%=0", f"N2 G1 {y}{rng.uniform(-2, 2):.3f} F600", "3 IF @A%=NUL THEN @A%=0 ENDIF"]
+    lines = [
+        "1 I%=0",
+        f"N2 G1 {y}{rng.uniform(-2, 2):.3f} F600",
+        "3 IF @A%=NUL THEN @A%=0 ENDIF",
+        "5 IF @B%=NUL THEN @B%=0 ENDIF",
+    ]
     number = iter(range(10, 10_000, 10))
     for _ in range(rng.randint(3, 7)):
         a, b, c = next(number), next(number), next(number)
@@ -67,11 +72,57 @@ def _cpl_program(rng: random.Random, x: str, y: str) -> str:
                 [f"{a} WAIT(,{rng.randint(3, 90)})"],
                 [f"{a} WAIT", f"{b} P!=MPOS(1)", f"N{c} {x}[P!+1]"],
                 [f"{a} T!=CLOCK", f"{b} IF CLOCK-T!<{rng.randint(3, 40)} THEN GOTO {b} ENDIF"],
+                [f"{a} @B%=@A%", f"{b} IF CLOCK<{rng.randint(3, 900)} THEN GOTO {b} ENDIF", f"{c} @B%=@A%+7"],
+                [
+                    f"{a} WHILE MPOS(1)<{rng.randint(1, 9)} DO",
+                    f"{b} IF CLOCK>900 THEN GOTO {c} ENDIF",
+                    f"{c} END",
+                ],
+                [
+                    f"{a} N%=0",
+                    f"{b} N%=N%+1",
+                    f"{c} IF (@B%<3) AND (N%<{rng.randint(2, 30_000)}) THEN GOTO {b} ENDIF",
+                ],
                 [f"{a} @A%=@A%+1", f"{b} IF @A%<{rng.randint(1, 4)} THEN GOTO {a} ENDIF"],
                 [f"N{a} M8"],
             ]
         )
     return "\n".join(lines) + "\nM30\n"
+
+
+def o_word_program(rng: random.Random) -> str:
+    """Return a program in LinuxCNC's language that moves, counts, waits, calls and reads places."""
+    number = iter(range(10, 10_000))
+    lines = ["G21 G90 G61", "#1 = 0", "#3 = 0.5"]
+    for _ in range(rng.randint(3, 8)):
+        n = next(number)
+        lines += rng.choice(
+            [
+                [f"G1 X{rng.uniform(-9, 40):.3f} Y{rng.uniform(-9, 20):.3f} F{rng.randint(400, 9000)}"],
+                [f"G0 X[#3 + {rng.uniform(1, 9):.3f}]", "#3 = [#3 + 0.75]"],
+                ["#1 = 0", f"o{n} while [#1 LT {rng.randint(2, 60_000)}]", "#1 = [#1 + 1]", f"o{n} endwhile"],
+                [f"M66 P3 L{rng.randint(1, 3)} Q{rng.uniform(0.003, 0.2):.3f}", "#4 = [#4 + #5399]"],
+                [f"M66 E1 L0 G1 X[#5420 * 0.125 + {rng.uniform(1, 9):.2f}] F2500"],
+                [
+                    f"o{n} repeat [{rng.randint(2, 400)}]",
+                    f"o900 call [{rng.uniform(1, 4):.2f}]",
+                    f"o{n} endrepeat",
+                ],
+                [f"o{n} do", "#5 = [#5 + 1]", f"o{n} while [#5 LT {rng.randint(2, 90)}]"],
+                [f"G1 Z[#3 * 2] F{rng.randint(900, 5000)}", "M98 P70 L2"],
+                [f"G4 P{rng.uniform(0.004, 0.09):.3f}"],
+                ["M8"],
+                [
+                    f"G1 X{rng.uniform(1, 30):.2f} F5000",
+                    "G91",
+                    *["X0.25 Y-0.125"] * rng.randint(2, 30),
+                    "G90",
+                ],
+            ]
+        )
+    return "\n".join(
+        ["o900 sub", "#31 = [#31 + #1]", "o900 endsub", *lines, "M2", "O70", "G91 X0.5", "G90", "M99"]
+    )
 
 
 def _power_mate(rng: random.Random, _folder: Path) -> PowerMate:
@@ -96,8 +147,17 @@ def _control(rng: random.Random, _folder: Path) -> Control:
     return made
 
 
+def _o_words(rng: random.Random, _folder: Path) -> Control:
+    made = Control(dialect="linuxcnc", servo=rng.random() < 0.3)
+    made.programs.create("part.ngc", o_word_program(rng))
+    made.select_program("part.ngc")
+    made.set_switches(single_block=rng.random() < 0.1)
+    made.cycle_start()
+    return made
+
+
 def _pnc(rng: random.Random, folder: Path) -> Pnc:
-    (folder / "anwperm.dat").write_text("DEF INT @A ;\n")
+    (folder / "anwperm.dat").write_text("DEF INT @A ;\nDEF INT @B ;\n")
     config = folder / "machine.toml"
     config.write_text(AXES)
     made = Pnc(folder, config, channels=[("X", "Y"), ("X2", "Y2")])
@@ -142,6 +202,7 @@ def _card(rng: random.Random, _folder: Path) -> Card:
 DEVICES: dict[str, Callable[[random.Random, Path], Any]] = {
     "power mate": _power_mate,
     "control": _control,
+    "o-words": _o_words,
     "pnc": _pnc,
     "board": _board,
     "card": _card,

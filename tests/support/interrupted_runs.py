@@ -74,17 +74,17 @@ def interrupted(
             case 0:
                 run.hold()
             case 1:
-                run.feed_override = float(rng.choice((0.0, 0.13, 0.5, 1.0, 1.7, 2.0)))
+                run.overrides.feed = float(rng.choice((0.0, 0.13, 0.5, 1.0, 1.7, 2.0)))
             case 2:
-                run.rapid_override = float(rng.choice((0.25, 0.5, 1.0)))
+                run.overrides.rapid = float(rng.choice((0.25, 0.5, 1.0)))
             case 3:
-                run.single_block = bool(rng.integers(0, 2))
+                run.switches.single_block = bool(rng.integers(0, 2))
             case 4 if run.state.value in ("hold", "stopped at block"):
                 (run.step_into, run.step_over, run.step_out)[int(rng.integers(0, 3))]()
             case _ if run.state.value in ("hold", "stopped at block"):
                 run.resume()
-    run.feed_override = run.rapid_override = 1.0
-    run.single_block = False
+    run.overrides.feed = run.overrides.rapid = 1.0
+    run.switches.single_block = False
     while run.state.value != "completed":
         if run.state.value != "active":
             run.resume()
@@ -126,7 +126,7 @@ def farthest(points: Floats, path: Floats) -> float:
 def fine_path(program: str, config: MachineConfig) -> Floats:
     """Return points of the path close together: the run at a twentieth of its feeds and rapids."""
     run = program_run(program, config, stands_at_stops=False)
-    run.feed_override = run.rapid_override = 0.05
+    run.overrides.feed = run.overrides.rapid = 0.05
     run.start()
     found = [run.machine.state.setpoint.tolist()]
     while run.active:

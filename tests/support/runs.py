@@ -43,3 +43,9 @@ def undisturbed(program: str | ProgramText, config: MachineConfig = MILL) -> tup
     run = program_run(program, config, stands_at_stops=False)
     run.start()
     return to_the_end(run), run.machine.setpoints
+
+
+def executed_line(run: ProgramRun) -> int:
+    """Return the line of the executed block, 0 before the first."""
+    block = run.reading.block
+    return 0 if block is None else block.line

@@ -398,7 +398,7 @@ def test_warmup_makes_a_job_ready_and_knows_its_jobs(tmp_path: Path) -> None:
     assert re.fullmatch(r"run +ready after \d+ s\n", polycnc("warmup", "run").stdout)
     wrong = polycnc("warmup", "drilling", status=2)
     assert "unknown job 'drilling'" in wrong.stderr
-    assert "run, post, apci, imc, all" in wrong.stderr
+    assert "run, stock, post, apci, imc, all" in wrong.stderr
     # What was warmed up is not compiled again: the line that says so is absent.
     part = tmp_path / "part.nc"
     part.write_text("G0 X1 Y2\nG1 X10 F600\nG2 X20 I5 J0\nM30\n")

@@ -9,21 +9,18 @@ import struct
 import threading
 from collections.abc import Iterator
 from pathlib import Path
-from typing import Any
 
 import pytest
 
 from polycnc.controllers.fanuc import PowerMate, fwlib
 from polycnc.controllers.fanuc.clib import FWLIB
-from polycnc.controllers.library.clib import Call, Slot, Way
 from polycnc.servers.process import Machinery
-from support.c_hold import Hold, Passed
+from support.c_hold import Hold
 from support.c_library import Door, at_door, built, loaded
 from support.focas_line import Line
+from support.fwlib_calls import AT_HOME, before, number_of, size_of
 
 AXES = 4
-HANDLE = 1
-LENGTHS = (4, 5, 6, 8, 10, 12, 16, 20, 28, 38, 46, 118, 262)
 
 
 @pytest.fixture(scope="module")
@@ -31,44 +28,6 @@ def door() -> Iterator[Door]:
     made = Door(("fanuc", Machinery(axes=AXES)))
     yield made
     made.close()
-
-
-def _number(call: Call, slot: Slot, dice: random.Random) -> Any:
-    name = slot.argument.name
-    if name == "FlibHndl":
-        return HANDLE if dice.random() < 0.95 else dice.choice((0, 2, 0xFFFF))
-    if slot.argument.length_of and dice.random() < 0.8:
-        return dice.choice(LENGTHS)
-    if dice.random() < 0.6:
-        return dice.randrange(-1, 5)
-    return None
-
-
-def _size(call: Call, slot: Slot, numbers: dict[str, Any]) -> int:
-    """Return what a program has there: what its length says, else one structure, or one per count."""
-    name = call.function.name
-    if name == "cnc_upload" and slot.way is Way.RECORD:
-        return 4 + (numbers["number"] or 0)
-    counter = next(
-        (each.name for each in call.function.arguments if each.length_of == slot.argument.name), ""
-    )
-    if counter:
-        size = int(numbers[counter] or 0)
-        return min(size, slot.width) if slot.way is Way.RECORD and not slot.writes else size
-    if slot.argument.many:
-        count = 6 if slot.argument.many == "MAX_AXIS" else numbers[slot.argument.many] or 0
-        most = 6 if slot.argument.many == "axis" else 0x7FFF
-        return max(0, min(most, count)) * slot.width
-    return slot.width
-
-
-def _before(call: Call, passed: list[Passed]) -> Any:
-    if call.slots and call.slots[0].argument.name == "FlibHndl" and passed[0].slot.way is Way.VALUE:
-        return None if passed[0].python == HANDLE else fwlib.EW_HANDLE
-    return None
-
-
-AT_HOME = ("cnc_allclibhndl", "cnc_allclibhndl2", "cnc_allclibhndl3", "cnc_freelibhndl")
 
 
 def _hold(
@@ -83,13 +42,13 @@ def _hold(
     assert (
         (library.cnc_allclibhndl(ctypes.byref(handle)), handle.value) == session.cnc_allclibhndl() == (0, 1)
     )
-    hold = Hold(FWLIB, library, session, random.Random(seed), _number, _size, _before)
+    hold = Hold(FWLIB, library, session, random.Random(seed), number_of, size_of, before)
     calls = [each for each in FWLIB.calls if each.function.name not in AT_HOME]
     for number in range(rounds):
         for call in hold.dice.sample(calls, len(calls)):
             hold.call(call)
         for device in (twin, door.devices[0]):
-            device.advance(5 * number)
+            device.advance(5 * (number % 60))
     return hold, twin
 
 
@@ -102,14 +61,16 @@ def test_every_function_answers_and_writes_as_the_facade(
 
 
 @pytest.mark.long
+@pytest.mark.timeout(0)
 @pytest.mark.parametrize("seed", range(1))
-def test_many_calls_answer_and_write_as_the_facade(
+def test_100_000_calls_answer_and_write_as_the_facade(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path, seed: int
 ) -> None:
     built("fanuc")
     door = Door(("fanuc", Machinery(axes=AXES)))
     try:
-        _hold(door, monkeypatch, tmp_path, 150, seed)
+        hold, _ = _hold(door, monkeypatch, tmp_path, 1_090, seed)
+        assert len(hold.told) > 100_000 - 92
     finally:
         door.close()
 

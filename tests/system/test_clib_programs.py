@@ -11,14 +11,14 @@ from pathlib import Path
 
 import pytest
 
-from polycnc.controllers.fanuc import PowerMate, fwlib
+from polycnc.cli._calls import calls_command
 from polycnc.servers.calls import build_library, library_of, write_library
 from polycnc.servers.process import Machinery
 from support.c_library import Door, built
 from support.command import COMMAND, environment
+from support.facade_programs import SYSTEM, facade_says
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
-SYSTEM = EXAMPLES / "apci_system.dat"
 WARNINGS = ("-Wall", "-Wextra", "-Werror", "-pedantic")
 PROGRAMS = {"fanuc": "fanuc_macro", "apci": "apci_jog", "imc": "imc_move"}
 SAID = {
@@ -29,25 +29,8 @@ WINDOWS = {"win64": "x86_64-w64-mingw32-gcc", "win32": "i686-w64-mingw32-gcc"}
 ROOTS_OF_32 = ("/usr/lib/i386-linux-gnu/wine", "/usr/lib/wine/i386-windows", "/usr/lib/wine/wine")
 
 
-def _facade_says() -> str:
-    session = fwlib.Session()
-    session.attach(0, PowerMate(3, characters=128_000))
-    _, handle = session.cnc_allclibhndl()
-    write = session.cnc_wrmacro(handle, 103, 10, 271828, 5)
-    code, macro = session.cnc_rdmacro(handle, 103, 10)
-    read, at = session.cnc_absolute(handle, fwlib.ALL_AXES, 16)
-    short, _ = session.cnc_absolute(handle, fwlib.ALL_AXES, 15)
-    found, parameter = session.cnc_rdparam(handle, 1420, 1, 8)
-    lines = (
-        "open 0", f"write {write:d}", f"macro {code:d}: {macro.mcr_val} {macro.dec_val}",
-        f"position {read:d}: {at.data[0]} {at.data[1]} {at.data[2]}", f"too short {short:d}",
-        f"parameter {found:d}: {parameter.u.ldata}", "free 0",
-    )  # fmt: skip
-    return "".join(f"{line}\n" for line in lines)
-
-
 def _said(kind: str) -> str:
-    return SAID.get(kind) or _facade_says()
+    return SAID.get(kind) or facade_says()
 
 
 def _linked(kind: str, folder: Path, to: Path) -> Path:
@@ -89,7 +72,7 @@ def test_a_program_links_and_says_what_it_has_to(kind: str, tmp_path: Path, door
     assert _run(doors[kind].place, _linked(kind, built(kind), tmp_path)) == _said(kind)
 
 
-def test_a_program_against_the_command(tmp_path: Path) -> None:
+def test_a_program_against_the_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     program, trace = _linked("fanuc", built("fanuc"), tmp_path), tmp_path / "calls.jsonl"
     process = subprocess.Popen(
         [*COMMAND, "calls", "fanuc", "--port", "0", "--trace", trace],
@@ -97,14 +80,57 @@ def test_a_program_against_the_command(tmp_path: Path) -> None:
     )  # fmt: skip
     assert process.stdout is not None
     place = process.stdout.readline().partition(" ")[2].strip()
-    assert _run(place, program) == _facade_says()
+    assert _run(place, program) == facade_says()
     process.terminate()
     _, error = process.communicate(timeout=30)
     assert (process.returncode, error) == (143, "")
     lines = trace.read_text().splitlines()
     assert len(lines) == 7
+    calls_command("fanuc", replay=trace)
+    assert capsys.readouterr().out == _shown("replayed")
     shown = json.loads(_shown("traced"))
     assert {**json.loads(lines[1]), "time_s": shown["time_s"]} == shown
+
+
+def test_a_collector_opens_anew_what_it_has_lost(tmp_path: Path) -> None:
+    folder, made = built("fanuc"), tmp_path / "collector"
+    subprocess.run(
+        ["gcc", "-std=c11", *WARNINGS, "-I", folder, "-o", made, EXAMPLES / "c" / "fanuc_collector.c",
+         "-L", folder, "-lfwlib32", f"-Wl,-rpath,{folder}"], check=True,
+    )  # fmt: skip
+    first = Door(("fanuc", Machinery(axes=2)))
+    port = int(first.place.rpartition(":")[2])
+    with subprocess.Popen(
+        [made, "127.0.0.1", str(port)],
+        stdin=subprocess.PIPE,
+        stdout=subprocess.PIPE,
+        text=True,
+        env=environment(),
+    ) as program:
+        assert program.stdin is not None
+        assert program.stdout is not None
+
+        def ask(lines: int) -> list[str]:
+            assert program.stdin is not None
+            assert program.stdout is not None
+            program.stdin.write("go\n")
+            program.stdin.flush()
+            return [program.stdout.readline().rstrip() for _ in range(lines)]
+
+        told = "mode 1, run 0, program 0, at 0 0, feed 0, alarms 0"
+        assert ask(2) == ["open 0", f"1: {told}"]
+        assert ask(1) == [f"2: {told}"]
+        first.close()
+        assert ask(1) == ["3: lost, -16"]
+        assert ask(1) == ["open -16"]
+        second = Door(("fanuc", Machinery(axes=2)), port=port)
+        try:
+            assert ask(2) == ["open 0", f"4: {told}"]
+            program.stdin.close()
+            assert program.stdout.read() == "free 0\n"
+            assert program.wait(20) == 0
+        finally:
+            second.close()
 
 
 def _shown(title: str) -> str:
@@ -117,7 +143,7 @@ def _shown(title: str) -> str:
 
 def test_the_tutorial_shows_the_program_and_what_it_prints() -> None:
     assert _shown("program") == (EXAMPLES / "c" / "fanuc_macro.c").read_text("utf-8")
-    assert _shown("output") == _facade_says()
+    assert _shown("output") == facade_says()
 
 
 @pytest.mark.long

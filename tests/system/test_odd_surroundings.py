@@ -49,8 +49,6 @@ def test_an_odd_number_ends_no_command_in_an_internal_error(name: str, folder: P
 
 
 REFUSED = {
-    "time-out": (("batch", "a.nc", "--timeout", "1e308"), "a time-out of 1e+308"),
-    "memory": (("batch", "a.nc", "--memory", "1e308"), "a limit of memory of 1e+308"),
     "pattern": (("batch", ".", "--pattern", ""), "'' is no pattern"),
     "dot": (("batch", ".", "--pattern", "."), "'.' is no pattern"),
     "report": (("batch", "a.nc", "-o", "r.csv", "--done", "r.csv"), "Name two files"),

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import zipfile
 from collections.abc import Iterator
 from itertools import pairwise
 from pathlib import Path
@@ -11,6 +12,7 @@ import numpy as np
 import pytest
 
 import polycnc
+from polycnc.stock import Stock, read_stl
 from support.browser import browser
 from support.command import polycnc as command
 
@@ -28,11 +30,19 @@ class Opened:
     """A view in the browser, and the trace of the same run."""
 
     def __init__(
-        self, chromium: Any, folder: Path, part: str, machine: str, stock: str | None = None, **page: Any
+        self,
+        chromium: Any,
+        folder: Path,
+        part: str,
+        machine: str,
+        stock: str | None = None,
+        *,
+        fails: bool = False,
+        **page: Any,
     ) -> None:
         cut = () if stock is None else ("--stock", stock, "--resolution", "0.5")
-        command("view", EXAMPLES / part, "-m", machine, "-o", folder / "part.html", *cut)
-        result = polycnc.run(EXAMPLES / part, machine, trace=True)
+        command("view", EXAMPLES / part, "-m", machine, "-o", folder / "part.html", *cut, status=int(fails))
+        result = polycnc.run(EXAMPLES / part, machine, trace=True, check=not fails)
         assert result.trace is not None
         self.trace = result.trace
         self.requests: list[str] = []
@@ -287,13 +297,48 @@ def test_the_slider_cuts_back_and_forth(chromium: Any, tmp_path: Path) -> None:
         assert np.array_equal(seen.setdefault(share, shown), shown)
     assert seen[0.3][0] < seen[0.7][0] < seen[1.0][0]
     result = polycnc.run(EXAMPLES / "bracket.nc", "mill3", stock="auto", resolution_mm=0.5)
-    assert result.stock is not None
+    assert isinstance(result.stock, Stock)
     heights = result.stock.heights - result.stock.grid.bottom
     assert seen[1.0][1::2] == pytest.approx(heights.ravel(), abs=0.01)
+    for how in ("stl", "3mf"):
+        view.page.evaluate(
+            "s => { const e = document.getElementById('slider'); e.value = e.max; e.oninput(); }"
+        )
+        with view.page.expect_download() as saved:
+            view.page.locator("#save").select_option(how)
+        assert saved.value.suggested_filename == f"bracket.{how}"
+        saved.value.save_as(tmp_path / f"part.{how}")
+    assert read_stl(tmp_path / "part.stl").volume_mm3 == pytest.approx(
+        result.stock.mesh().volume_mm3, rel=1e-3
+    )
+    with zipfile.ZipFile(tmp_path / "part.3mf") as archive:
+        assert archive.testzip() is None
+        model = archive.read("3D/3dmodel.model")
+    assert model.count(b"<triangle ") == int(
+        np.frombuffer((tmp_path / "part.stl").read_bytes(), "<u4", 1, 80)[0]
+    )
     view.page.locator("#stock").select_option("whole")
     assert view.page.evaluate(field)[0] == 0
     view.page.locator("#section").select_option("1")
     assert view.page.locator("#cut").is_visible()
+    view.close()
+
+
+def test_an_alarm_is_named_with_its_place_and_the_rest_is_grey(chromium: Any, tmp_path: Path) -> None:
+    """The camera shows what was meant to be cut, in one colour with nothing that turns over time."""
+    program = tmp_path / "stopped.nc"
+    program.write_text("G21 G90 G94\nG0 X3 Y4 Z1\nG1 X13 F900\nG2 X80 I3 J0\nG1 X43\nY24\nM30\n")
+    view = Opened(chromium, tmp_path, str(program), "mill3", fails=True)
+    assert (
+        view.page.locator("#stopped").inner_text().startswith("▲ Stopped at line 4, X13.000 Y4.000 Z1.000: ")
+    )
+    box, count = view.page.evaluate(
+        "() => { const { path, stage } = document.getElementById('stage').seen; return [path.box, path.rest().count]; }"
+    )
+    assert np.array(box[:2]) == pytest.approx(np.array([[0.0, 43.0], [0.0, 24.0]]), abs=4.1)
+    assert count >= 2
+    view.page.locator("#stopped").click()
+    assert view.time_s == pytest.approx(float(view.trace.t_s[-1]), abs=0.002)
     view.close()
 
 

@@ -115,6 +115,7 @@ def test_a_file_that_cannot_be_booted_leaves_the_board_alone(folder: Path, name:
     assert application.status() == Status.DONE
 
 
+@pytest.mark.covers("apci.BootFile")
 @pytest.mark.parametrize(
     ("code", "resets"),
     [

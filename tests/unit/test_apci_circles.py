@@ -90,6 +90,7 @@ def cmp_for(name: str, phi: float, **given: float) -> pcap.CMP:
     return pcap.CMP(**{**SPEEDS, **given}, phi=phi, dtca1=x, dtca2=y)
 
 
+@pytest.mark.covers("apci.rddv")
 @pytest.mark.parametrize("phi", QUARTERS)
 @pytest.mark.parametrize("name", [case("mca", *CMP), case("mcr", *CMP)])
 def test_a_circle_of_two_axes(pc: Pc, name: str, phi: float) -> None:
@@ -108,6 +109,7 @@ def test_a_circle_of_two_axes(pc: Pc, name: str, phi: float) -> None:
     assert math.hypot(pc.dv(ORDER[0]), pc.dv(ORDER[1])) == near(7.0)
 
 
+@pytest.mark.covers("apci.CMP.phi", "apci.CMP.dtca1", "apci.CMP.dtca2")
 @pytest.mark.parametrize("phi", QUARTERS)
 @pytest.mark.parametrize("name", [case("smca"), case("smcr")])
 def test_a_queued_circle_of_two_axes(pc: Pc, name: str, phi: float) -> None:
@@ -177,6 +179,7 @@ def test_a_queued_helix(pc: Pc, name: str, phi: float) -> None:
     assert_helix(track[first:], phi)
 
 
+@pytest.mark.covers("apci.mha")
 @pytest.mark.parametrize(("phi", "turned"), [(1e-101, 90.0), (-1e-101, -270.0)])
 @pytest.mark.covers("apci.HMP.phi", "apci.HMP.dtm", "apci.const.phithreshold")
 def test_a_helix_without_an_angle_ends_on_the_ray_to_its_target_point(
@@ -246,6 +249,7 @@ def test_a_circle_in_space(pc: Pc, name: str, phi: float) -> None:
     assert math.sqrt(sum(pc.dv(axis) ** 2 for axis in ORDER)) == near(7.0)
 
 
+@pytest.mark.covers("apci.HMP3D.phi", "apci.HMP3D.dtca1", "apci.HMP3D.dtca2", "apci.HMP3D.dtca3")
 @pytest.mark.parametrize("phi", [90.0, -90.0])
 @pytest.mark.parametrize("name", [case("smca3d"), case("smcr3d")])
 def test_a_queued_circle_in_space(pc: Pc, name: str, phi: float) -> None:

@@ -35,6 +35,7 @@ def bit(an: int, flag: int) -> bool:
 # ------------------------------------------------------------------ monitors
 
 
+@pytest.mark.covers("apci.rdPosErr")
 @pytest.mark.covers("apci.wrmpe", "apci.TSRP.mpe", "apci.axst.7.mpe")
 def test_the_position_error_is_watched_against_mpe_where_it_is_above_0() -> None:
     pc = Pc(DRIVE * 3)
@@ -54,6 +55,7 @@ def test_the_position_error_is_watched_against_mpe_where_it_is_above_0() -> None
     assert [bit(an, Axst.mpe) for an in range(3)] == [False, True, False]
 
 
+@pytest.mark.covers("apci.rdPosErr", "apci.axst.12.pe")
 @pytest.mark.covers("apci.wripw", "apci.TSRP.ipw", "apci.axst.14.ip")
 def test_the_axis_is_in_position_within_ipw_of_its_target_behind_the_end_of_the_profile() -> None:
     pc = Pc(DRIVE * 3)
@@ -109,6 +111,7 @@ def test_uf_sends_six_coefficients_that_act_at_once_on_their_own_axis() -> None:
 # ------------------------------------------------------------------ conversions
 
 
+@pytest.mark.covers("apci.TSRP.rp", "apci.TSRP.dv", "apci.mlr")
 @pytest.mark.covers("apci.wrgf", "apci.TSRP.gf", "apci.wrslsp", "apci.var.slsp")
 @pytest.mark.parametrize("how", ["gf", "slsp"])
 def test_gear_factor_and_resolution_convert_counts_to_the_unit_of_the_axis(how: str) -> None:
@@ -129,6 +132,9 @@ def test_gear_factor_and_resolution_convert_counts_to_the_unit_of_the_axis(how: 
     assert (pc.rp(0), pc.rp(1)) == near((2.0, 3.0))
 
 
+@pytest.mark.covers(
+    "apci.rdjac", "apci.rdjvl", "apci.TSRP.jac", "apci.TSRP.jvl", "apci.TSRP.gf", "apci.TSRP.rp"
+)
 @pytest.mark.covers("apci.wrgf", "apci.wrslsp")
 @pytest.mark.parametrize(("gf", "slsp"), [(0.375, 4000.0), (0.25, 7000.0), (0.1, 900.0)])
 def test_positions_speeds_and_a_running_jog_keep_their_numbers_when_counts_per_unit_change(
@@ -159,6 +165,7 @@ def test_positions_speeds_and_a_running_jog_keep_their_numbers_when_counts_per_u
     assert runs[1][3] > 0.0
 
 
+@pytest.mark.covers("apci.rdEffRadius", "apci.MODEREG.10.rotaxisunit", "apci.TRU.pu", "apci.mlr")
 @pytest.mark.covers("apci.wrEffRadius", "apci.var.effradius", "apci.interp.surface")
 @pytest.mark.parametrize(("pu", "unit_mm"), [(0, 1.0), (1, 25.4), (2, 1000.0)])
 @pytest.mark.parametrize("in_degrees", [False, True])

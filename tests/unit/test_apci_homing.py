@@ -91,6 +91,7 @@ def test_inputs_show_in_digi_of_every_axis(number: int) -> None:
     assert all(axis.digi & 0xFFFF == 0 for axis in rig.board.axes)
 
 
+@pytest.mark.covers("apci.axst.13.cl", "apci.TSRP.dp")
 @pytest.mark.covers("apci.shp", "apci.axst.17.referenced", "apci.rule.referenced", "apci.ra")
 @pytest.mark.parametrize("motor", ["servo", "stepper"])
 def test_machine_zero_and_what_ends_it(motor: str) -> None:
@@ -129,6 +130,7 @@ def test_machine_zero_and_what_ends_it(motor: str) -> None:
     assert not rig.bits() & Axst.referenced
 
 
+@pytest.mark.covers("apci.TSRP.lp")
 @pytest.mark.covers(
     "apci.const.lplatency", "apci.io.LP", "apci.axst.16.lpsf", "apci.var.lp", "apci.var.lpndx"
 )
@@ -153,6 +155,7 @@ def test_position_latched_by_an_input() -> None:
     assert axis.lp > kept + 1.0
 
 
+@pytest.mark.covers("apci.TSRP.lp")
 @pytest.mark.covers("apci.lps", "apci.axst.16.lpsf")
 @pytest.mark.parametrize("scans", [10, 100])
 def test_position_latched_every_so_many_scans(scans: int) -> None:

@@ -99,6 +99,7 @@ def test_circles_absolute_and_relative(
         assert speeds_along(rig, 0, 1).max() == pytest.approx(40.0, rel=1e-4)
 
 
+@pytest.mark.covers("apci.mha", "apci.mhr")
 @pytest.mark.covers("apci.interp.helical")
 @pytest.mark.parametrize("relative", [False, True])
 def test_helix_all_axes_end_together(relative: bool) -> None:
@@ -117,6 +118,7 @@ def test_helix_all_axes_end_together(relative: bool) -> None:
     assert (rig.setpoints(2)[:-1] - 1.0) / 5.0 == pytest.approx(turned)
 
 
+@pytest.mark.covers("apci.mha")
 @pytest.mark.covers("apci.interp.helical", "apci.const.phithreshold")
 @pytest.mark.parametrize(
     ("phi", "target", "end", "turn_deg"),
@@ -305,6 +307,7 @@ def test_motion_stop_stays_on_the_circle(mode: int, deceleration: float) -> None
     assert rig.bits() & Axst.cl
 
 
+@pytest.mark.covers("apci.var.sdec")
 @pytest.mark.covers("apci.ms", "apci.js")
 def test_motion_stop_of_what_is_past_its_end_uses_the_stop_deceleration() -> None:
     rig = Rig()

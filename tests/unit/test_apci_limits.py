@@ -127,6 +127,7 @@ def test_tom_takes_the_drive_away_and_it_coasts(sign: float, limit: float, bit: 
     assert not rig.bits() & bit
 
 
+@pytest.mark.covers("apci.limit.TOM", "apci.limit.SMA", "apci.limit.SMD")
 @pytest.mark.parametrize(
     ("side", "function", "bit"),
     [

@@ -200,6 +200,12 @@ def test_enable_outputs_and_relays() -> None:
     assert board.outputs == 0x0E
     assert [axis.relay for axis in board.axes] == [False, True, True]
     cl(board, (0,))
+    board.outputs = 0x0F
+    ol(board, (0, 2))  # every axis switches its own output off
+    assert board.outputs == 0x0C
+    assert [axis.relay for axis in board.axes] == [False, True, False]
+    cl(board, (0, 2))
+    assert board.outputs == 0x0F
     ra(board, (1,))  # also resets the output of axis 2, which is in its group
     assert board.outputs & 0x02 == 0
     assert board.outputs & 0x40

@@ -35,6 +35,7 @@ def memory(tmp_path: Path) -> Path:
     return path
 
 
+@pytest.mark.covers("apci.rdepc", "apci.TSRP.epc")
 def test_everything_is_there_again_when_it_is_switched_on(memory: Path, tmp_path: Path) -> None:
     (slot,) = loaded(tmp_path, memory)
     records = pcap.tsrp_array()

@@ -57,6 +57,7 @@ def go(pc: Pc, an: int, target: float) -> None:
 # ---------------------------------------------------------------------- loops and resets
 
 
+@pytest.mark.covers("apci.rddp", "apci.rdmcp", "apci.wrmcp", "apci.rdaxstb", "apci.TSRP.tp")
 @pytest.mark.covers("apci.rddigob", "apci.rdrv")
 @pytest.mark.covers("apci.cl", "apci.ol", "apci.ctrl.loop", "apci.rule.relays")
 def test_cl_takes_over_the_actual_position_and_sets_pae_and_ol_resets_it(pc: Pc) -> None:
@@ -111,6 +112,7 @@ def test_clv_lets_a_moving_axis_go_on_until_js_stops_it(pc: Pc) -> None:
     assert pcap.rdrv(0) == near(0.0, abs=1e-9)
 
 
+@pytest.mark.covers("apci.TSRP.axst", "apci.rdaxstb")
 @pytest.mark.covers("apci.rdMCiS")
 @pytest.mark.covers("apci.ra", "apci.rule.override_reset", "apci.rule.referenced", "apci.wrjovr")
 def test_ra_resets_its_axes_and_keeps_their_parameters(pc: Pc) -> None:
@@ -131,6 +133,7 @@ def test_ra_resets_its_axes_and_keeps_their_parameters(pc: Pc) -> None:
     assert pcap.rdaxstb(2, Axst.cl.bit_length()) == 1
 
 
+@pytest.mark.covers("apci.rdcd", "apci.rdci", "apci.wrcd", "apci.wrci", "apci.rdifs")
 @pytest.mark.covers("apci.rdMCiS", "apci.rdtrovr")
 @pytest.mark.covers("apci.rs", "apci.rule.commonpersist", "apci.rule.override_reset", "apci.rule.referenced")
 def test_rs_resets_all_axes_and_keeps_parameters_common_variables_and_ifs(pc: Pc) -> None:
@@ -176,6 +179,7 @@ def test_a_stepper_is_not_referenced_any_more_when_its_loop_opens_or_closes(pc: 
         assert (pcap.rdaxstb(0, referenced), pcap.rdaxstb(1, referenced)) == (1, 0)
 
 
+@pytest.mark.covers("apci.wrdp", "apci.wrrp", "apci.rddp")
 @pytest.mark.covers("apci.RPtoDP", "apci.rule.versions")
 def test_rptodp_takes_the_actual_position_as_setpoint_where_no_profile_runs() -> None:
     for revision, expected in (("V2.5.3.100", 12.0), ("V2.5.3.99", 14.0)):
@@ -204,6 +208,7 @@ def test_rptodp_takes_the_actual_position_as_setpoint_where_no_profile_runs() ->
         pcap.detach()
 
 
+@pytest.mark.covers("apci.rdaxst", "apci.axst.18.refh")
 @pytest.mark.covers("apci.rule.versions")
 def test_old_operating_systems_lack_some_status_bits() -> None:
     seen = {}
@@ -243,6 +248,7 @@ def test_shp_sets_the_machine_zero_and_arms_the_software_limits(pc: Pc) -> None:
     assert (pc.rp(0), pcap.rdaxstb(0, Axst.lsrs.bit_length())) == (near(15.0), 0)
 
 
+@pytest.mark.covers("apci.rdZeroOffset", "apci.szpr")
 @pytest.mark.covers("apci.shp", "apci.szpa", "apci.rule.toolradius_spline")
 def test_zeros_are_not_moved_under_a_moving_axis_or_queued_commands(pc: Pc) -> None:
     axes = pc.close(0)
@@ -289,6 +295,7 @@ def test_zero_offsets_shift_what_positions_count_from(pc: Pc) -> None:
     assert pcap.rdZeroOffset(9) == (1, 0.0)
 
 
+@pytest.mark.covers("apci.rdjovr")
 @pytest.mark.covers("apci.utrovr", "apci.wrtrovr", "apci.profile.override")
 def test_the_trajectory_override_works_from_utrovr_on(pc: Pc) -> None:
     axes = pc.close(0)
@@ -342,6 +349,25 @@ def test_inputs_by_word_and_by_number(pc: Pc, number: int) -> None:
     assert pcap.rddigib(2, 17 if number == 16 else number + 1) == (1 if number == 4 else 0)
 
 
+@pytest.mark.parametrize("board", ["APCI-8001", "APCI-8008"])
+@pytest.mark.parametrize("number", [21, 22, 23, 24])
+@pytest.mark.covers(*(f"apci.digi.{bit}" for bit in (20, 21, 22, 23, "24-31")), "apci.rddigi", "apci.rddigib")
+@pytest.mark.covers(*(f"apci.rddigib.bitnr.{number}" for number in (21, 22, 23, 24, "25-32")))
+def test_alarms_of_an_encoder_are_seen_on_an_apci_8008_only(board: str, number: int) -> None:
+    pc = Pc(f'board_type = "{board}"\n')
+    pc.board.axes[1].alarms = 1 << number - 1
+    pc.board.advance(1)
+    records = pcap.TSRP(an=1), pcap.TSRP(an=2)
+    for record in records:
+        pcap.rddigi(record)
+    shown = board == "APCI-8008"
+    assert [record.digi for record in records] == [shown << number - 1, 0]
+    assert [pcap.rddigib(1, bit) for bit in range(17, 33)] == [
+        shown and bit == number for bit in range(17, 33)
+    ]
+    pcap.detach()
+
+
 @pytest.mark.covers("apci.digi.16", "apci.rddigib.bitnr.17", "apci.rddigib.bitnr.25-32", "apci.rddigi")
 @pytest.mark.covers("apci.rddigib", "apci.TSRP.digi")
 def test_the_index_signal_is_seen_while_the_encoder_passes_it(pc: Pc) -> None:
@@ -367,6 +393,7 @@ def test_the_index_signal_is_seen_while_the_encoder_passes_it(pc: Pc) -> None:
     assert before < 4.0 <= after
 
 
+@pytest.mark.covers("apci.rddigi", "apci.rddigib")
 @pytest.mark.covers("apci.rdigi", "apci.digi.17", "apci.digi.18", "apci.digi.19", "apci.rddigib.bitnr.18")
 @pytest.mark.covers("apci.rddigib.bitnr.19", "apci.rddigib.bitnr.20")
 def test_rdigi_resets_the_latched_signals_of_its_axis(pc: Pc) -> None:
@@ -405,6 +432,7 @@ def test_outputs_by_word_and_by_number(pc: Pc, number: int) -> None:
     assert record.digo == 0xFF & ~(1 << (number - 1))
 
 
+@pytest.mark.covers("apci.rddigo", "apci.wrdigob", "apci.wrdigo")
 @pytest.mark.covers("apci.rddigob")
 @pytest.mark.covers("apci.wrdigob.bitnr.9-32", "apci.digo.8-31", "apci.const.digout")
 def test_there_are_no_outputs_beyond_the_eighth(pc: Pc) -> None:
@@ -419,6 +447,7 @@ def test_there_are_no_outputs_beyond_the_eighth(pc: Pc) -> None:
     assert record.digo == 0xFF
 
 
+@pytest.mark.covers("apci.ifs.0.edv", "apci.ifs.20.scpfe", "apci.ifs.21.BusError")
 @pytest.mark.covers("apci.rdifs", "apci.rdifsb", "apci.rifs", "apci.TSRP.ifs", "apci.ifs.16.pfe")
 @pytest.mark.covers("apci.ifs.17.wdog", "apci.ifs.18.iae", "apci.ifs.1.cncrdy")
 def test_the_interface_status_and_its_reset(pc: Pc) -> None:
@@ -453,6 +482,7 @@ def test_each_light_is_switched_by_itself(pc: Pc, colour: str) -> None:
 # ---------------------------------------------------------------------- latches, recording, interrupts
 
 
+@pytest.mark.covers("apci.axst.16.lpsf")
 @pytest.mark.covers("apci.lps", "apci.rdlp", "apci.wrlp", "apci.TSRP.lp", "apci.var.lp")
 def test_lps_latches_every_so_many_scans_and_reading_clears_the_flag(pc: Pc) -> None:
     axes = pc.close(0)

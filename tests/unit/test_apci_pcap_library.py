@@ -265,11 +265,12 @@ def test_a_status_is_0_or_minus_4_when_the_operating_system_has_stopped(
 @pytest.mark.parametrize(
     "name", ["wrdpoffset", "wrdvoffset", "wrgfaux", "rddpoffset", "rdPcapIndex", "rdZeroOffset"]
 )
-@pytest.mark.covers("apci.ret.other")
+@pytest.mark.covers("apci.ret.other", "apci.gettskinfo", "apci.const.tasks")
 def test_an_unknown_axis_is_an_unknown_error(name: str) -> None:
     Pc()
     returned = getattr(pcap, name)(*((3, 0.5) if name.startswith("wr") else (3,)))
     assert returned == ((1, 0) if isinstance(returned, tuple) else 1)
+    assert [pcap.gettskinfo(task) for task in (-1, 3, 4)] == [(1, 0), (0, 0), (1, 0)]  # nor is there a task 4
 
 
 @pytest.mark.covers("apci.rdErrorReg", "apci.rdirqpc", "apci.rdrv")

@@ -198,6 +198,7 @@ def test_js_brakes_with_sdec_and_stops_at_once_with_0(pc: Pc) -> None:
     assert pc.rp(0) == near(before, abs=50.0 * SCAN_S)
 
 
+@pytest.mark.covers("apci.MODEREG.15.MS_DECEL")
 @pytest.mark.covers("apci.ms", "apci.wrtrac")
 def test_ms_brakes_along_the_circle_with_the_path_deceleration_or_trac(pc: Pc) -> None:
     axes = pc.close(0, 1)
@@ -244,6 +245,12 @@ def test_mlr_counts_from_where_the_axes_are_in_the_units_of_ctru(pc: Pc) -> None
     assert at(pc) == near((200.0, 0.0, 0.0, 0.0))
 
 
+@pytest.mark.covers(
+    "apci.ErrorReg.0.errAxDef",
+    "apci.ErrorReg.12.VelocityZero",
+    "apci.ErrorReg.13.AccelZero",
+    "apci.ErrorReg.15.ZeroProfile",
+)
 @pytest.mark.covers("apci.rdErrorReg")
 @pytest.mark.parametrize("name", ["mla", "mlr"])
 @pytest.mark.covers("apci.mla", "apci.mlr")
@@ -267,6 +274,7 @@ def test_a_line_that_cannot_be_is_not_begun(pc: Pc, name: str) -> None:
     assert at(pc) == (0.0,) * 4
 
 
+@pytest.mark.covers("apci.ErrorReg.3.errCenterPoint", "apci.ErrorReg.16.RadiusError")
 @pytest.mark.covers("apci.rdErrorReg")
 @pytest.mark.covers("apci.mca", "apci.mcr")
 def test_a_circle_needs_two_axes_and_a_radius(pc: Pc) -> None:
@@ -336,6 +344,7 @@ def test_units_of_time(pc: Pc, unit: int, seconds: float) -> None:
     assert pc.scans_until_rest() == scans(2.5)
 
 
+@pytest.mark.covers("apci.ErrorReg.2.errUnit", "apci.TRU.tu")
 @pytest.mark.covers("apci.ctru")
 def test_a_unit_that_does_not_exist_changes_nothing_but_the_error_register(pc: Pc) -> None:
     for tru in (pcap.TRU(pu=8), pcap.TRU(pu=-1), pcap.TRU(pu=1, tu=3)):
@@ -391,6 +400,7 @@ def test_ssms_starts_only_axes_at_rest_in_position_control(pc: Pc) -> None:
     assert (pc.rp(0), pcap.rdaxstb(0, 13)) == (0.0, 1)
 
 
+@pytest.mark.covers("apci.rdci")
 @pytest.mark.covers("apci.rddigob")
 @pytest.mark.covers("apci.ssf", "apci.ssfi", "apci.ssfni", "apci.smlai", "apci.smlri", "apci.rdPcapIndex")
 @pytest.mark.covers("apci.var.PcapIndex")

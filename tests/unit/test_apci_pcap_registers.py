@@ -62,79 +62,87 @@ def row(name: str, *values: object, also: tuple[str, ...] = ()) -> object:
     return pytest.param(name, *values, marks=pytest.mark.covers(*rows), id=name)
 
 
+def pair(name: str, field: str, *values: object) -> object:
+    """Return a case of a register that is read and written through an element of the record."""
+    also = (f"apci.wr{name}", f"apci.TSRP.{field}")
+    return row(name, field, *values, also=(*also, "apci.var.aux") if name == "aux" else also)
+
+
 @pytest.mark.parametrize(
     ("stem", "field", "planned", "written"),
     [
-        row("jac", "jac", 101.0, 55.0),
-        row("jvl", "jvl", 102.0, 55.0),
-        row("jtvl", "jtv", 13.0, -55.0),
-        row("hac", "hac", 104.0, 55.0),
-        row("hvl", "hvl", 105.0, 55.0),
-        row("sdec", "sdec", 106.0, 0.0),
-        row("sll", "sll", -107.0, -55.0),
-        row("slr", "slr", 108.0, 55.0),
-        row("ipw", "ipw", 0.109, 0.0),
-        row("mpe", "mpe", 0.11, 0.0),
-        row("gf", "gf", 0.25, 0.5),
-        row("jovr", "jovr", 1.0, 0.5),
-        row("aux", "aux", 0.0, -5.5, also=("apci.TSRP.aux", "apci.var.aux", "apci.wraux")),
-        row("tp", "tp", 0.0, 5.5),
-        row("lp", "lp", 0.0, 5.5),
+        pair("jac", "jac", 101.0, (1234.5,)),
+        pair("jvl", "jvl", 102.0, (6789.25,)),
+        pair("jtvl", "jtv", 13.0, (0.0, -432.5)),
+        pair("hac", "hac", 104.0, (2345.75,)),
+        pair("hvl", "hvl", 105.0, (987.5,)),
+        pair("sdec", "sdec", 106.0, (0.0, 345.25)),
+        pair("sll", "sll", -107.0, (-1234.5,)),
+        pair("slr", "slr", 108.0, (5678.25,)),
+        pair("ipw", "ipw", 0.109, (0.0, 12.375)),
+        pair("mpe", "mpe", 0.11, (0.0, 123.625)),
+        pair("gf", "gf", 0.25, (1.625,)),
+        pair("jovr", "jovr", 1.0, (0.625,)),
+        pair("aux", "aux", 0.0, (-1234567.5,)),
+        pair("tp", "tp", 0.0, (4321.75,)),
+        pair("lp", "lp", 0.0, (-3210.5,)),
     ],
 )
 def test_an_element_of_the_record_is_the_planned_value_until_it_is_written(
-    pc: Pc, stem: str, field: str, planned: float, written: float
+    pc: Pc, stem: str, field: str, planned: float, written: tuple[float, ...]
 ) -> None:
     read, write = getattr(pcap, f"rd{stem}"), getattr(pcap, f"wr{stem}")
-    record, other = pcap.TSRP(an=1), pcap.TSRP(an=0)
-    read(other)
-    untouched = getattr(other, field)
-
+    others = [pcap.TSRP(an=axis) for axis in (0, 2)]
+    for other in others:
+        read(other)
+    untouched = [getattr(other, field) for other in others]
+    record = pcap.TSRP(an=1)
     read(record)
     assert getattr(record, field) == near(planned, rel=1e-15)
-    setattr(record, field, written)
-    write(record)
-    again = pcap.TSRP(an=1)
-    read(again)
-    assert getattr(again, field) == near(written, rel=1e-15)
-    setattr(again, field, 0.0)
-    assert again == pcap.TSRP(an=1)  # and nothing else of the record
-
-    read(other)
-    assert getattr(other, field) == untouched  # another axis has its own
+    for value in written:
+        setattr(record, field, value)
+        write(record)
+        again = pcap.TSRP(an=1)
+        read(again)
+        assert getattr(again, field) == near(value, rel=1e-15)
+        setattr(again, field, 0.0)
+        assert again == pcap.TSRP(an=1)  # and nothing else of the record
+    for other in others:
+        read(other)
+    assert [getattr(other, field) for other in others] == untouched  # every axis has its own
 
 
 @pytest.mark.parametrize(
     ("stem", "planned", "written"),
     [
-        row("EffRadius", 0.0, 100.0),
-        row("JerkRel", 0.4, 0.2),
-        row("MaxVel", 111.0, 0.0),
-        row("MaxAcc", 112.0, 0.0),
-        row("MDVel", 113.0, 0.0),
-        row("GCR", 0, 0x55, also=("apci.var.GCR", "apci.wrGCR")),
-        row("ControllerFlags", 0, 0x81, also=("apci.var.ControllerFlags", "apci.wrControllerFlags")),
+        row("EffRadius", 0.0, 123.75, also=("apci.wrEffRadius", "apci.var.effradius")),
+        row("JerkRel", 0.4, 0.3125, also=("apci.wrJerkRel", "apci.jerkrel")),
+        row("MaxVel", 111.0, 4567.25, also=("apci.wrMaxVel", "apci.var.MaxVel")),
+        row("MaxAcc", 112.0, 7654.5, also=("apci.wrMaxAcc", "apci.var.MaxAcc")),
+        row("MDVel", 113.0, 321.125, also=("apci.wrMDVel", "apci.var.MDVEL")),
+        row("GCR", 0, 0x12345678, also=("apci.var.GCR", "apci.wrGCR")),
+        row("ControllerFlags", 0, 0x40010081, also=("apci.var.ControllerFlags", "apci.wrControllerFlags")),
     ],
 )
 def test_a_register_by_axis_number_is_returned_and_written(
     pc: Pc, stem: str, planned: float, written: float
 ) -> None:
     read, write = getattr(pcap, f"rd{stem}"), getattr(pcap, f"wr{stem}")
-    before = read(0)
+    before = read(0), read(2)
 
     assert read(1) == planned
     write(1, written)
     assert read(1) == written
     assert type(read(1)) is type(written)
-    assert read(0) == before
+    assert (read(0), read(2)) == before
 
 
 @pytest.mark.parametrize(
     ("stem", "planned", "written"),
     [
-        row("dpoffset", 0.0, 0.25),
-        row("dvoffset", 0.0, 6.0),
-        row("gfaux", 1.0, 2.0, also=("apci.var.gfaux", "apci.wrgfaux")),
+        row("dpoffset", 0.0, -1234.5, also=("apci.wrdpoffset", "apci.var.dpoffset")),
+        row("dvoffset", 0.0, 4567.5, also=("apci.wrdvoffset", "apci.var.dvoffset")),
+        row("gfaux", 1.0, 2.625, also=("apci.var.gfaux", "apci.wrgfaux")),
     ],
 )
 def test_a_register_with_a_status_returns_0_and_its_value(
@@ -151,10 +159,10 @@ def test_a_register_with_a_status_returns_0_and_its_value(
 @pytest.mark.parametrize(
     ("stem", "planned", "written"),
     [
-        row("trac", 201.0, 55.0),
-        row("trvl", 202.0, 55.0),
-        row("trtvl", 20.0, -55.0),
-        row("trovrst", 0.5, 0.0),
+        row("trac", 201.0, 1234.5, also=("apci.wrtrac",)),
+        row("trvl", 202.0, 5678.25, also=("apci.wrtrvl",)),
+        row("trtvl", 20.0, -4321.5, also=("apci.wrtrtvl",)),
+        row("trovrst", 0.5, 12.375, also=("apci.wrtrovrst",)),
     ],
 )
 def test_a_variable_of_the_board_with_a_status(pc: Pc, stem: str, planned: float, written: float) -> None:
@@ -165,6 +173,9 @@ def test_a_variable_of_the_board_with_a_status(pc: Pc, stem: str, planned: float
     assert read() == (0, written)
 
 
+@pytest.mark.covers(
+    "apci.MODEREG.0.lookahead", "apci.MODEREG.15.MS_DECEL", "apci.MODEREG.28.JSatSAF", "apci.MODEREG.SProfile"
+)
 @pytest.mark.covers("apci.rdModeReg", "apci.wrModeReg", "apci.MODEREG")
 def test_the_mode_register_is_read_and_written_as_a_whole_word(pc: Pc) -> None:
     assert pcap.rdModeReg() == ModeReg.lookahead | ModeReg.MS_DECEL == 0x8001
@@ -226,6 +237,15 @@ def test_the_sample_time_is_1280_microseconds(pc: Pc) -> None:
     assert pc.board.time_s - before == near(1280e-6)
 
 
+@pytest.mark.covers(
+    "apci.uf",
+    "apci.TSRP.kp",
+    "apci.TSRP.ki",
+    "apci.TSRP.kd",
+    "apci.TSRP.kpl",
+    "apci.TSRP.kfca",
+    "apci.TSRP.kfcv",
+)
 @pytest.mark.covers("apci.rdf")
 def test_the_filter_is_read_and_sent_as_a_whole(pc: Pc) -> None:
     record = pcap.TSRP(an=1)
@@ -253,6 +273,7 @@ def test_relative_jerk_is_limited_to_0_to_1_and_its_default_is_1(pc: Pc) -> None
         assert pcap.rdJerkRel(0) == stored
 
 
+@pytest.mark.covers("apci.rdtp", "apci.rdrp", "apci.rddp", "apci.wrjtvl", "apci.wrjvl")
 @pytest.mark.covers("apci.rdrpd", "apci.rddpd", "apci.rdtpd", "apci.rule.display_units")
 def test_positions_in_the_display_unit(pc: Pc) -> None:
     axes = pc.close(1)  # mm, displayed in inches
@@ -300,6 +321,7 @@ def test_the_target_is_that_of_the_last_travel_command_and_always_absolute(pc: P
     assert pc.rp(0) == near(4.5)  # writing it moves nothing
 
 
+@pytest.mark.covers("apci.wrjtvl")
 @pytest.mark.covers("apci.rdrp", "apci.rddp", "apci.rddv", "apci.rdrv", "apci.rdPosErr", "apci.TSRP.dv")
 @pytest.mark.covers("apci.profile.acceleration", "apci.profile.max_velocity", "apci.wrjac", "apci.wrjvl")
 @pytest.mark.covers("apci.TSRP.rp", "apci.TSRP.dp", "apci.var.dv", "apci.var.rv", "apci.var.PosErr")
@@ -332,6 +354,7 @@ def test_positions_and_velocities_during_a_jog() -> None:
     pcap.detach()
 
 
+@pytest.mark.covers("apci.axst.17.referenced", "apci.rdaxstb")
 @pytest.mark.covers("apci.wrrp", "apci.rdrp")
 def test_the_actual_position_is_written_with_open_loop_only_and_the_reference_is_lost(pc: Pc) -> None:
     record = pcap.TSRP(an=0, tp=5.0, rp=12.0)
@@ -427,6 +450,7 @@ def test_the_axis_status_by_word_and_by_bit(pc: Pc) -> None:
     assert (seen[5], seen[-1], pc.rp(0)) == (0, 1, 25.0)
 
 
+@pytest.mark.covers("apci.sdels")
 @pytest.mark.covers("apci.rdlsm", "apci.rdMCiS", "apci.TSRP.lsm", "apci.const.spoolmem")
 def test_the_spooler_memory_shrinks_and_motion_commands_are_counted(pc: Pc) -> None:
     axes = pc.close(0)
@@ -455,6 +479,7 @@ def test_eeprom_cycles_are_those_of_the_board(pc: Pc) -> None:
     assert record.epc == 10_000
 
 
+@pytest.mark.covers("apci.ErrorReg.2.errUnit")
 @pytest.mark.covers("apci.rdErrorReg")
 def test_the_error_register_belongs_to_the_board_and_stays(pc: Pc) -> None:
     assert pcap.rdErrorReg() == 0
@@ -464,8 +489,22 @@ def test_the_error_register_belongs_to_the_board_and_stays(pc: Pc) -> None:
     assert pcap.rdErrorReg() == 4
 
 
+@pytest.mark.covers(
+    *(f"apci.TSRP.{each}" for each in ("kp", "jvl", "rp", "tp", "lsm", "epc", "digi", "digo", "scratch")),
+    *(
+        f"apci.{each}"
+        for each in ("rdf", "rdjvl", "rdrp", "rdtp", "rdlsm", "rdepc", "rddigi", "rddigo", "rdifs", "wrdigo")
+    ),
+)
 @pytest.mark.covers("apci.rdap", "apci.TSRP.an")
 def test_rdap_reads_all_of_the_record_that_the_table_lists(pc: Pc) -> None:
+    pcap.wrrp(pcap.TSRP(an=1, rp=-1234.5))
+    pcap.wrtp(pcap.TSRP(an=1, tp=4321.25))
+    pcap.wrdigo(pcap.TSRP(an=1, digo=0xA5))
+    pc.slot.board.eprom_cycles = 4321  # type: ignore[attr-defined]
+    for number in (3, 11):
+        pc.board.set_input(number, True)
+    pc.board.advance(3)
     record = pcap.TSRP(an=1, scratch=[1, 2, 3, 4], aux=1.0, lp=2.0, dv=3.0, sdec=4.0)
     pcap.rdap(record)
     assert (record.an, list(record.scratch)) == (1, [1, 2, 3, 4])
@@ -480,6 +519,8 @@ def test_rdap_reads_all_of_the_record_that_the_table_lists(pc: Pc) -> None:
         function(single)
     assert record == single
     assert (record.kp, record.jvl, record.lsm) == (1.5, near(102.0), 145_000)
+    assert (record.rp, record.tp, record.epc) == (near(-1234.5), near(4321.25), 4321)
+    assert (record.digi & 0xFFFF, record.digo, record.ifs & 2) == (0x404, 0xA5, 2)
     record.an = 7
     pcap.rdap(record)
     assert record.kp == 1.5  # there is no such axis

@@ -123,14 +123,14 @@ def test_the_output_of_a_task_is_asked_for_and_read(pc: Pc, tmp_path: Path) -> N
 def test_common_doubles_singly_and_all_at_once(pc: Pc) -> None:
     written, read = pcap.CDBUF(), pcap.CDBUF()
     for number in range(1000):
-        written.cd[number] = number + 0.5
+        written.cd[number] = 0.5 - number * 98765.25
         pcap.wrcd(number, written)
     pcap.rdcd(7, read)
-    assert (read.cd[6], read.cd[7], read.cd[8]) == (0.0, 7.5, 0.0)
+    assert (read.cd[6], read.cd[7], read.cd[8]) == (0.0, -691356.25, 0.0)
     for number in (101, 999):
         alone = pcap.CDBUF()
         pcap.rdcd(number, alone)
-        assert {k: value for k, value in enumerate(alone.cd) if value} == {number: number + 0.5}
+        assert {k: value for k, value in enumerate(alone.cd) if value} == {number: 0.5 - number * 98765.25}
     pcap.rdcd(100, read)  # the first hundred: CD100 cannot be read by itself
     assert read.cd[:100] == written.cd[:100]
     assert read.cd[100:] == [0.0] * 900
@@ -142,21 +142,21 @@ def test_common_doubles_singly_and_all_at_once(pc: Pc) -> None:
     written.cd[5] = math.nan
     pcap.wrcd(5, written)
     pcap.rdcd(5, read)
-    assert read.cd[5] == 5.5
+    assert read.cd[5] == -493825.75
 
 
 @pytest.mark.covers("apci.rdci", "apci.wrci", "apci.CIBUF", "apci.const.cncount")
 def test_common_integers_singly_and_all_at_once(pc: Pc) -> None:
     written, read = pcap.CIBUF(), pcap.CIBUF()
     for number in range(1000):
-        written.ci[number] = -number
+        written.ci[number] = -number * 1_234_567
         pcap.wrci(number, written)
     pcap.rdci(7, read)
-    assert (read.ci[6], read.ci[7], read.ci[8]) == (0, -7, 0)
+    assert (read.ci[6], read.ci[7], read.ci[8]) == (0, -7 * 1_234_567, 0)
     for number in (101, 999):
         alone = pcap.CIBUF()
         pcap.rdci(number, alone)
-        assert {k: value for k, value in enumerate(alone.ci) if value} == {number: -number}
+        assert {k: value for k, value in enumerate(alone.ci) if value} == {number: -number * 1_234_567}
     pcap.rdci(100, read)
     assert read.ci[:100] == written.ci[:100]
     assert read.ci[100:] == [0] * 900

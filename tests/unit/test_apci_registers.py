@@ -66,6 +66,13 @@ def test_a_table_has_the_manual_s_bits_and_no_others(table: type[Bits], bits: st
     assert table.assigned() == sum(1 << number for number in wanted.values())
 
 
+@pytest.mark.covers(
+    "apci.MODEREG.ForbidTargetVel",
+    "apci.MODEREG.InhibitProfileRefuse",
+    "apci.MODEREG.OvrMode",
+    "apci.MODEREG.ClearZeroPosition",
+    "apci.MODEREG.SProfile",
+)
 def test_modes_have_the_stated_numbers_and_the_ruled_ones_are_free() -> None:
     words = MODE_REG.split()
     stated = dict(zip(words[1::2], map(int, words[::2]), strict=True))
@@ -140,6 +147,7 @@ def test_three_inputs_latch_the_first_three_axes() -> None:
     assert STROBE_INPUT_OF_AXIS == (14, 15, 16)
 
 
+@pytest.mark.covers("apci.rdigi")
 def test_rdigi_clears_the_four_signals_of_the_encoder() -> None:
     assert Digi.cleared(0x00FF_FFFF, "rdigi") == 0x00F0_FFFF
 

@@ -158,6 +158,7 @@ def test_a_program_that_polls_a_board_it_never_initialised_is_told_once(
 ERRORS = (Ifs.pfe, Ifs.wdog, Ifs.iae, Ifs.scwdog, Ifs.scpfe, Ifs.BusError, Ifs.EpmBaseResetFlag)
 
 
+@pytest.mark.covers("apci.rifs", "apci.rddigib", "apci.wrdigob")
 @pytest.mark.covers("apci.rule.ifs_error")
 @pytest.mark.parametrize("error", [*ERRORS, Ifs.EpmOpmfResetFlag])
 def test_an_error_in_ifs_resets_inputs_and_outputs_until_the_next_boot(tmp_path: Path, error: Ifs) -> None:
@@ -193,6 +194,7 @@ def test_an_error_in_ifs_resets_inputs_and_outputs_until_the_next_boot(tmp_path:
     assert levels() == working
 
 
+@pytest.mark.covers("apci.ifs.0.edv", "apci.ifs.1.cncrdy")
 def test_what_is_no_error_leaves_inputs_and_outputs_alone() -> None:
     board = Board()
     board.outputs = 9
@@ -239,6 +241,7 @@ def test_the_highest_bits_of_digi_stay_0(board_type: str) -> None:
         assert word & 0xFFFFFFFF & ~((1 << 20) - 1) & ~Digi.assigned() == 0
 
 
+@pytest.mark.covers("apci.ErrorReg.12.VelocityZero", "apci.ErrorReg.13.AccelZero")
 @pytest.mark.covers("apci.ErrorReg")
 def test_one_error_register_of_the_board_tells_why_dhef_is_set() -> None:
     pc = Pc()
@@ -366,6 +369,7 @@ def test_a_circle_goes_round_a_centre_that_lies_on_no_axis(absolute: bool) -> No
     assert tuple(axis.rp for axis in rig.board.axes) == pytest.approx(end, abs=1e-9)
 
 
+@pytest.mark.covers("apci.rdgf", "apci.wrgf")
 def test_another_gear_factor_changes_the_counts_of_a_unit() -> None:
     pc = Pc("[[axis]]\nslsp = 4000.0\ngf = 0.25\n")
     assert pc.board.axes[0].counts_per_unit == 1000.0

@@ -34,6 +34,7 @@ CIRCLES = {  # statement, and where it ends from (17, -9, 4); the numbers are wo
 }
 
 
+@pytest.mark.covers("sap.spoolnames", "sap.named_axis_args")
 @pytest.mark.parametrize("name", CIRCLES)
 def test_moves_of_a_program_reach_their_ends_at_once_and_queued(name: str) -> None:
     arguments, end = CIRCLES[name]
@@ -123,6 +124,7 @@ def test_the_settling_time_of_a_program_stretches_a_change_of_the_override() -> 
     assert axis.cd(1) == pytest.approx(0.6)
 
 
+@pytest.mark.covers("apci.rdirqpc")
 @pytest.mark.covers("sap.IRQPC", "sap.LEDGN", "sap.LEDRD", "sap.LEDYL")
 def test_lights_and_the_interrupt_of_a_program_reach_the_pc() -> None:
     axis = Sap()
@@ -143,22 +145,26 @@ def test_lights_and_the_interrupt_of_a_program_reach_the_pc() -> None:
     pcap.detach()
 
 
+@pytest.mark.covers("apci.rdcd", "apci.rdci", "apci.wrcd", "apci.wrci")
 @pytest.mark.covers("sap.CI", "sap.CD", "apci.const.cncount")
 def test_common_variables_are_those_of_the_pc() -> None:
     axis = Sap()
     pcap.attach(axis.board, clock=None)
     pcap.InitMcuSystem3(pcap.tsrp_array(), pcap.ROSI(), 0, "system.dat")
     integers, doubles = pcap.CIBUF(), pcap.CDBUF()
-    integers.ci[713], doubles.cd[999] = -45, 6.25
+    integers.ci[713], doubles.cd[999] = -1_345_678_901, -654321.25
     pcap.wrci(713, integers)
     pcap.wrcd(999, doubles)
     axis.run("CI999 := CI713 - 2; CD641 := CD999 * 3;", scans=3)
     pcap.rdci(999, integers)
     pcap.rdcd(641, doubles)
-    assert (integers.ci[999], doubles.cd[641]) == (-47, 18.75)
+    assert (integers.ci[999], doubles.cd[641]) == (-1_345_678_903, -1962963.75)
     pcap.detach()
 
 
+@pytest.mark.covers(
+    "apci.rdSysVarInt", "apci.rdSysVarDbl", "apci.wrSysVarInt", "apci.rdAxVarInt", "apci.wrAxVarDbl"
+)
 @pytest.mark.covers(
     "sap.SysVarInt", "sap.SysVarDbl", "sap.axis.varint", "sap.axis.vardbl", "sap.qualifier_access"
 )
@@ -166,14 +172,18 @@ def test_application_variables_are_those_of_the_pc() -> None:
     axis = Sap()
     pcap.attach(axis.board, clock=None)
     pcap.InitMcuSystem3(pcap.tsrp_array(), pcap.ROSI(), 0, "system.dat")
-    pcap.wrSysVarInt(37, -712)
-    pcap.wrAxVarDbl(1, 6, 2.625)  # axis 1 (A2), variable 6
+    pcap.wrSysVarInt(37, -712_345_678)
+    pcap.wrAxVarDbl(1, 6, -41234.625)  # axis 1 (A2), variable 6
     axis.run(
         "CI0 := SysVarInt[37]; SysVarDbl[41] := A2.vardbl[5 + 1] * 3; A3.varint[8] := CI0 - 5;"
         "CD0 := A1.vardbl[6]; CD1 := A2.vardbl[7];",
         scans=3,
     )
-    assert (axis.ci(0), pcap.rdSysVarDbl(41), pcap.rdAxVarInt(2, 8)) == (-712, 7.875, -717)
+    assert (axis.ci(0), pcap.rdSysVarDbl(41), pcap.rdAxVarInt(2, 8)) == (
+        -712_345_678,
+        -123703.875,
+        -712_345_683,
+    )
     assert (axis.cd(0), axis.cd(1), pcap.rdSysVarInt(36), pcap.rdAxVarInt(1, 8)) == (0.0, 0.0, 0, 0)
     pcap.detach()
 
@@ -235,6 +245,7 @@ def test_tables_of_a_program_give_one_setpoint_a_scan(statement: str, expected: 
 # ------------------------------------------------------------------ filter, signals, interface, buffers
 
 
+@pytest.mark.covers("apci.TSRP.kp", "apci.TSRP.kfcv")
 @pytest.mark.covers("apci.uf")
 def test_a_filter_that_a_program_writes_acts_from_uf_on_and_for_its_axes_only() -> None:
     axis = Sap()
@@ -270,6 +281,7 @@ def test_rdigi_of_a_program_resets_the_latched_signals_of_its_axes() -> None:
     ]
 
 
+@pytest.mark.covers("apci.ifs.17.wdog", "apci.ifs.18.iae")
 @pytest.mark.covers("sap.axis.ifs", "sap.axis.digi")
 def test_rifs_of_a_program_resets_the_errors_of_the_interface() -> None:
     axis = Sap()
@@ -280,6 +292,7 @@ def test_rifs_of_a_program_resets_the_errors_of_the_interface() -> None:
     assert axis.ci(1) == axis.ci(0) - errors
 
 
+@pytest.mark.covers("apci.rdcbcnct", "apci.wrcbcnct", "apci.CBCNCT")
 @pytest.mark.covers("sap.RDCBx", "sap.WRCBx", "apci.const.cbsize")
 def test_the_common_buffer_of_a_task_is_that_of_the_pc() -> None:
     axis = Sap()
@@ -303,6 +316,7 @@ def test_the_common_buffer_of_a_task_is_that_of_the_pc() -> None:
 # ------------------------------------------------------------------ what else a program writes, reads and commands
 
 
+@pytest.mark.covers("apci.TSRP.digo")
 def test_positions_motor_command_and_outputs_of_a_program_go_to_their_axis() -> None:
     axis = Sap()
     axis.run(
@@ -324,6 +338,7 @@ def test_zero_offsets_of_a_program_count_from_each_other_and_go_away() -> None:
     assert [axis.cd(k) for k in range(6)] == [2.5, 10.0, 3.75, 8.75, 0.0, 12.5]
 
 
+@pytest.mark.covers("apci.var.PcapIndex")
 def test_a_program_reads_error_queue_and_index_of_its_axis() -> None:
     axis = Sap()
     axis.run(

@@ -98,6 +98,7 @@ def test_common_variables_are_a_thousand_each_and_the_same_for_tasks_and_pc() ->
     assert run_text("CI[999 + 1] := 1;").tasks.rdcncts(0).errnum == 2
 
 
+@pytest.mark.covers("sap.TRAC", "sap.TRVL", "sap.TRTVL")
 @pytest.mark.parametrize(
     ("name", "value"),
     [
@@ -128,6 +129,7 @@ def test_system_variables_are_shared_with_the_pc(name: str, value: float) -> Non
         assert path[part] == 2.0
 
 
+@pytest.mark.covers("sap.axis.jerkrel", "sap.axis.dpoffset", "sap.axis.dvoffset", "sap.axis.slsp")
 @pytest.mark.parametrize("name", ["jerkrel", "dpoffset", "dvoffset", "slsp"])
 def test_axis_qualifiers_are_read_and_written(name: str) -> None:
     board = FakeBoard()

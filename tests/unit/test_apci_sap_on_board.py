@@ -163,6 +163,7 @@ def uncompiled(function: Any) -> Any:
     return getattr(function, "py_func", function)
 
 
+@pytest.mark.covers("apci.io.EO", "apci.io.DR", "apci.io.UI", "apci.io.REF")
 @pytest.mark.covers("apci.axst.0", "apci.axst.10", "apci.axst.11", "apci.axst.20-31")
 @pytest.mark.covers("sap.axis.digi", *(f"apci.digi.{bit}" for bit in range(16, 20)))
 def test_a_program_reads_the_status_and_signals_that_the_pc_reads() -> None:

@@ -146,7 +146,12 @@ def test_a_reset_of_the_system_halts_all_tasks() -> None:
 
 
 @pytest.mark.covers(
-    "apci.CNCTS", "apci.CNCTS.running", "apci.CNCTS.running.bit0", "apci.CNCTS.csrcline", "apci.rdcncts"
+    "apci.CNCTS",
+    "apci.CNCTS.running",
+    "apci.CNCTS.running.bit0",
+    "apci.CNCTS.running.bit3",
+    "apci.CNCTS.csrcline",
+    "apci.rdcncts",
 )
 def test_status_shows_the_line_that_is_being_executed() -> None:
     board = FakeBoard()
@@ -159,6 +164,9 @@ def test_status_shows_the_line_that_is_being_executed() -> None:
     board.tasks.contcnct(0)
     board.advance()
     assert board.tasks.rdcncts(0)[3:] == (0, 5)
+    board.tasks.contcnct(0)
+    board.advance()
+    assert board.tasks.rdcncts(0).running == 1 | 8  # it runs while it waits
     assert board.tasks.rdcncts(7) == (0, 0, 0, 0, 0)
 
 
@@ -301,6 +309,7 @@ def test_the_first_event_comes_first_and_the_others_follow() -> None:
     assert board.ci(0) == 123
 
 
+@pytest.mark.covers("apci.CNCTS.errline")
 def test_a_mistake_in_a_condition_stops_the_task() -> None:
     board = FakeBoard()
     board.start("VAR z : INTEGER;\nEVENT e ON 1 DIV z = 0; BEGIN END;\nBEGIN WHILE TRUE DO ; END.")

@@ -352,6 +352,7 @@ def test_a_relative_line_counts_from_the_end_of_the_last_table() -> None:
     assert rig.board.axes[2].rp == pytest.approx(-1.18)
 
 
+@pytest.mark.covers("apci.ErrorReg.4.errSpoolerOverrun")
 @pytest.mark.covers("apci.spd", "apci.const.spdsize")
 def test_table_sizes_and_memory() -> None:
     rig = Rig(keep=50_000)

@@ -21,6 +21,7 @@ from polycnc.controllers.apci.board._system_text import system_file_text
 from polycnc.controllers.apci.board._units import PositionUnit, TimeUnit, ratio, seconds
 from polycnc.errors import ConfigurationError, UsageError
 from support.apci_bits import ModeReg
+from support.often import share
 
 
 def refused(text: str) -> ConfigurationError:
@@ -243,7 +244,7 @@ files = st.builds(
 )
 
 
-@settings(max_examples=60)
+@settings(max_examples=share(60))
 @given(files)
 def test_a_system_file_comes_back_from_its_text(config: SystemFile) -> None:
     assert parse_system_file(system_file_text(config)) == config

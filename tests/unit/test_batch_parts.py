@@ -12,6 +12,7 @@ import signal
 import sqlite3
 import sys
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -414,7 +415,7 @@ def test_a_table_has_one_row_for_each_report(tmp_path: Path) -> None:
         "program": "a.nc", "ok": "false", "time_s": "1.5", "cutting_time_s": "", "path_mm": "", "errors": "one\ntwo",
         "messages": "", "status": "error", "machine": "mill3", "dialect": "din", "override_percent": "80.0",
         "tolerance_mm": "", "rapid_time_s": "", "waiting_time_s": "", "cutting_path_mm": "", "top_feed_mm_min": "",
-        "blocks": "7", "cycles": "",
+        "blocks": "7", "cycles": "", "removed_mm3": "",
     }  # fmt: skip
 
 
@@ -554,3 +555,27 @@ def test_a_fault_of_its_own_ends_a_batch_and_lets_nobody_wait(monkeypatch: pytes
     chunks.append([Job("b.nc", "b.nc", b"", 0)])
     with pytest.raises(ZeroDivisionError):
         list(workers.run(iter(chunks), [Setup(MILL)], Limits()))
+
+
+def test_a_collision_is_an_error_of_its_program_and_what_cuts_nothing_is_none() -> None:
+    setup = Setup(
+        MILL, "fanuc", stock="box=0,0,-9,20,20,0", resolution_mm=0.5, fixtures=("box=0,-20,-9,20,-9,3",)
+    )
+    text = "(T1 D=6. - flat end mill)\nT1 M6\nS900 M3\nG0 X-5 Y8\nZ-3\nG1 X25 F900\nM30\n"
+    right = report_of(_job_of(text), setup)
+    assert (right.status, right.errors) == ("ok", [])
+    assert right.removed_mm3 == pytest.approx(20.0 * 6.0 * 3.0, rel=0.02)
+    wrong = report_of(_job_of(text.replace("G1 X25 F900", "G0 X25")), setup)
+    assert wrong.status == "error"
+    assert "rapid through stock, 3.000 mm deep" in wrong.errors[0]
+    nothing = report_of(_job_of("G0 X3\nM30\n"), replace(setup, stock="auto"))
+    assert (nothing.status, nothing.removed_mm3) == ("ok", None)
+    assert nothing.messages[-1] == "the program cuts nothing: no stock can be told"
+
+
+def test_a_batch_cuts_no_files() -> None:
+    for options in ({"stock": "part.stl"}, {"stock": "auto", "fixtures": ["vice.stl"]}):
+        with pytest.raises(UsageError, match="for a batch"):
+            setups_of(None, None, {}, check_only=False, detail=False, **options)
+    with pytest.raises(UsageError, match="no stock"):
+        setups_of(None, None, {}, check_only=False, detail=False, stock="ball")

@@ -18,6 +18,7 @@ from scipy.optimize import brentq
 
 from polycnc.kernel import MOST_SPANS, SPAN_CURVED, SPAN_END, SPAN_LENGTH, SPAN_SIZE, cut_bezier
 from polycnc.kernel._bezier import BEND_BOUND, SHORTEST_MM, TANGENT_BOUND, bezier_point, bezier_tangent
+from support.often import share
 
 Floats = npt.NDArray[np.float64]
 
@@ -199,7 +200,7 @@ coordinates = st.integers(-100_000, 100_000).map(lambda x: x / 1000.0)
 points = st.tuples(coordinates, coordinates)
 
 
-@settings(deadline=None, max_examples=80)
+@settings(deadline=None, max_examples=share(80))
 @given(points, points, points)
 def test_every_curve_is_cut_where_it_is(
     first: tuple[float, float], second: tuple[float, float], end: tuple[float, float]

@@ -94,12 +94,14 @@ def test_words_reach_the_interpreter_as_values_and_records_point_at_the_line() -
     run.start()
     while run.active:
         run.advance(1)
-        record = run.executed
+        record = run.reading.block
         assert record is not None
         if not seen or seen[-1] != (record.line, record.text):
             seen.append((record.line, record.text))
             if record.line == 2:
-                assert run.distance_to_go["X"] + run.position["X"] == pytest.approx(4 + 1 / 3, abs=1e-15)
+                assert run.reading.distance_to_go["X"] + run.reading.position["X"] == pytest.approx(
+                    4 + 1 / 3, abs=1e-15
+                )
     assert seen == [(2, "G1 X[#1] F600"), (3, "X5 Y1"), (4, "X6 Y2")]
     assert run.machine.setpoints == {"X": 6.0, "Y": 2.0, "Z": 0.0}
 
@@ -109,10 +111,10 @@ def test_a_drain_lets_the_source_read_what_has_been_executed() -> None:
 
     def main(_: object) -> Items:
         yield block(2, ("G", 1), ("X", 4), ("F", 600))
-        read.append(run.position["X"])  # without a drain: prepared ahead
+        read.append(run.reading.position["X"])  # without a drain: prepared ahead
         yield Drain(5)
-        read.append(run.position["X"])
-        yield block(6, ("X", run.position["X"] + 1.5))
+        read.append(run.reading.position["X"])
+        yield block(6, ("X", run.reading.position["X"] + 1.5))
 
     run = program_run(PROGRAM, language=Language({1: main}))
     run.start()
@@ -129,7 +131,7 @@ def test_a_drain_gives_out_what_radius_compensation_holds_back() -> None:
         yield block(2, ("G", 1), ("G", 41), ("D", 1), ("X", 4), ("F", 600))
         yield block(3, ("X", 9))
         yield Drain(5)
-        read.append(run.position["X"])
+        read.append(run.reading.position["X"])
         yield block(6, ("X", 15))
         yield block(8, ("G", 40), ("X", 20))
 
@@ -193,7 +195,7 @@ def test_calls_hand_arguments_over_and_sources_are_closed_once() -> None:
     while run.state.value != "completed":
         run.step_into()
         to_the_end(run)
-        record = run.executed
+        record = run.reading.block
         assert record is not None
         found.append((record.line, record.stack))
     assert found == [
@@ -242,8 +244,10 @@ def test_a_source_that_calls_by_itself_names_text_and_calls() -> None:
     language = Nesting({})
     run = program_run(PROGRAM, language=language)
     run.start()
-    run.advance(100_000, until=lambda: run.executed is not None and run.executed.program == "other.nc")
-    record = run.executed
+    run.advance(
+        100_000, until=lambda: run.reading.block is not None and run.reading.block.program == "other.nc"
+    )
+    record = run.reading.block
     assert record is not None
     assert (record.line, record.text, record.stack) == (1, "G91 X2", (Call("lang.nc", 7),))
     assert record.modal.g[Group.DISTANCE] == "G91"
@@ -264,8 +268,8 @@ def test_statements_are_stepped_to() -> None:
     while run.state.value != "completed":
         run.step_into()
         to_the_end(run)
-        assert run.executed is not None
-        found.append(run.executed.line)
+        assert run.reading.block is not None
+        found.append(run.reading.block.line)
     assert found == [1, 2, 5]
 
 

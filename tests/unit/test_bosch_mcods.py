@@ -90,6 +90,10 @@ def coordinate(name: str, value: object) -> Change:
     return change
 
 
+def fewer_coordinates(image: Image) -> None:
+    image.channels[1].coordinates = image.channels[1].coordinates[:-1]
+
+
 Z = "\0"
 CASES = [
     # axes: X=1 Y=2 Z=3 (gap 4) B=5 S=6 C=7 U=8; feed and auxiliary axes are X Y Z B C U
@@ -185,7 +189,7 @@ CASES = [
     Case(79, 1, "Z", "I", (0, 0)),
     Case(80, 1, "E", "I", (0, 1), put("axis.2.referenced", True)),
     Case(81, 1, "E", "I", (2, 1, 3), coordinate("unit", Unit.INCH)),
-    Case(82, 1, "E", "I", (2, 2, 1), lambda image: image.channels[1].coordinates.pop()),
+    Case(82, 1, "E", "I", (2, 2, 1), fewer_coordinates),
     Case(83, 1, "Z", "R", (36.5, 26.5)),
     Case(87, 2, "E", "I", (15,), put("channel.2.dwell", False)),
     Case(89, 1, "E", "R", (0.25, 0.75), coordinate("correction", 0.5)),

@@ -14,6 +14,7 @@ from typer.testing import CliRunner
 from polycnc.cli._app import app
 from polycnc.errors import UsageError
 from polycnc.servers.calls import library_of, missing_of
+from support.often import share
 
 _AT = 0x3000  # where the only section begins when the program is loaded
 _SIZE = 0x18000
@@ -107,7 +108,7 @@ _WHOLE = (
 )
 
 
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=share(150), deadline=None)
 @given(st.sampled_from(_WHOLE), st.data())
 def test_a_cut_or_changed_program_is_read_or_refused_in_a_sentence(
     tmp_path_factory: pytest.TempPathFactory, whole: bytes, data: st.DataObject

@@ -15,7 +15,7 @@ from polycnc.servers.calls import LIBRARIES, build_command, build_library, libra
 from support.command import polycnc
 
 COUNTS = {"fanuc": 96, "imc": 53, "apci": 197}
-FILES = ("fwlib32.h", "fwlib32.c", "fwlib32.def", "fwlib32_win32.def")
+FILES = ("fwlib32.h", "fwlib32.c", "fwlib32.def", "fwlib32_win32.def", "fwlib32.pas", "fwlib32.cs")
 KINDS = sorted(LIBRARIES)
 FEW = [each if each == "fanuc" else pytest.param(each, marks=pytest.mark.long) for each in KINDS]
 WINDOWS = {"win32": "i686-w64-mingw32-gcc", "win64": "x86_64-w64-mingw32-gcc"}
@@ -39,13 +39,17 @@ def test_two_tables_have_two_hashes() -> None:
     assert len({library_of(kind).table_hash for kind in KINDS}) == len(KINDS)
 
 
-@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize(("kind", "packing"), [*((each, 0) for each in KINDS), ("fanuc", 4)])
 @pytest.mark.parametrize("language", ["c11", "c++17"])
-def test_the_header_compiles_without_a_warning(kind: str, language: str, tmp_path: Path) -> None:
+def test_the_header_compiles_without_a_warning(
+    kind: str, packing: int, language: str, tmp_path: Path
+) -> None:
     compiler = "g++" if "+" in language else "gcc"
     if shutil.which(compiler) is None:
         pytest.skip(f"no C compiler {compiler} here")
-    write_library(library_of(kind), tmp_path)
+    library = library_of(kind).packed(packing)
+    assert library is not None
+    write_library(library, tmp_path)
     source = tmp_path / ("client.cpp" if "+" in language else "client.c")
     source.write_text(f'#include "{library_of(kind).name}.h"\n')
     command = [
@@ -107,6 +111,7 @@ def test_what_it_wrote_is_written_anew(tmp_path: Path) -> None:
     ("words", "told"),
     [
         (("siemens",), "there is no C library of 'siemens'"),
+        (("imc", "--packing", "4"), "IMCnet is not packed to 4 bytes"),
         (("fanuc", "--target", "amiga"), "there is no target 'amiga'"),
     ],
 )

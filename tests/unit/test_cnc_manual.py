@@ -15,6 +15,7 @@ from polycnc.errors import UsageError
 from polycnc.kernel import REFERENCE
 from polycnc.machine import Machine
 from support.cnc_machine import B, X, Y, Z, cnc_machine
+from support.often import share
 
 
 class Rig:
@@ -354,7 +355,7 @@ COMMANDS = st.lists(
 )
 
 
-@settings(max_examples=60)
+@settings(max_examples=share(60))
 @example(commands=[("handle", 1, 0.0), ("up", 186, 0.0), ("handle", 74, 0.0), ("up", 260, 0.0)], jerkrel=0.6)
 @given(commands=COMMANDS, jerkrel=st.sampled_from((0.0, 0.6)))
 def test_whatever_the_operator_does_no_axis_breaks_a_limit_in_any_cycle(

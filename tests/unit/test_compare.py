@@ -32,6 +32,7 @@ from polycnc.runner.comparison import (
 )
 from polycnc.runner.comparison._path import PathCollector
 from support.command import polycnc as command
+from support.often import share
 
 MILL = """name = "compared"
 [[axis]]
@@ -113,7 +114,7 @@ POINTS = st.lists(
 )
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=share(60), deadline=None)
 @given(POINTS, POINTS)
 def test_equals_the_distance_that_shapely_samples(
     a: list[tuple[float, float]], b: list[tuple[float, float]]
@@ -154,7 +155,7 @@ def walked_in_steps(one: list[tuple[float, float]], other: list[tuple[float, flo
     return row[-1]
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=share(60), deadline=None)
 @given(POINTS, POINTS)
 def test_order_equals_the_frechet_distance_of_walks_in_steps(
     a: list[tuple[float, float]], b: list[tuple[float, float]]

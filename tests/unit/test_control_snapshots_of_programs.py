@@ -43,7 +43,7 @@ def end(control: Control, language: MacroLanguage) -> tuple[object, ...]:
         control.machine.snapshot(),
         variables.get(100),
         variables.get(101),
-        run.executed,
+        run.reading.block,
     )
 
 

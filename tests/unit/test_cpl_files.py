@@ -21,7 +21,7 @@ def root(tmp_path: Path) -> Root:
 # ---------------------------------------------------------------------- sequential files
 
 
-@pytest.mark.covers("cpl.ex.4063", "cpl.file.seq", "cpl.CLOSE", "cpl.PRN#.n.1-9")
+@pytest.mark.covers("cpl.ex.4063", "cpl.file.seq", "cpl.CLOSE", "cpl.PRN#.n.1-9", "cpl.PRN#")
 def test_records_end_with_lf_and_the_file_with_etx_lf(root: Root) -> None:
     text = (
         '1 OPENW(1,"P2",300,"TEST PRN COMMAND")\n2 A$="TEST"\n3 B$="FOR"\n4 C$="PRN COMMAND"\n5 PRN#(1,A$)\n'
@@ -117,7 +117,7 @@ def test_what_was_written_is_read_back(root: Root) -> None:
     assert result.messages[-1].line == 12
 
 
-@pytest.mark.covers("cpl.ex.4241", "cpl.FILEPOS.mode.1", "cpl.SEEK")
+@pytest.mark.covers("cpl.ex.4241", "cpl.FILEPOS.mode.1", "cpl.SEEK", "cpl.FILEPOS")
 def test_places_in_a_sequential_file_are_bytes(root: Root) -> None:
     found = root.run(
         '1 OPENW(1,"P2",200,"TEST")\n2 FOR I%= 1 TO 10\n3 PRN#(1,"TEST FOR FILEPOS")\n4 NEXT\n5 CLOSE(1)\n'
@@ -127,7 +127,7 @@ def test_places_in_a_sequential_file_are_bytes(root: Root) -> None:
     assert [found[f"#{name}%"] for name in "ABCD"] == [3, 3, 171, 171]
 
 
-@pytest.mark.covers("cpl.ex.4340", "cpl.FILESIZE.k.1", "cpl.FILESIZE.k.2")
+@pytest.mark.covers("cpl.ex.4340", "cpl.FILESIZE.k.1", "cpl.FILESIZE.k.2", "cpl.FILESIZE")
 def test_the_size_counts_every_byte_up_to_the_end(root: Root) -> None:
     # 15 bytes a record: the text of the example has lost a character
     found = root.run(
@@ -165,7 +165,7 @@ def test_eof_ends_a_loop_over_all_records(root: Root) -> None:
     assert found["#L%"] == 10
 
 
-@pytest.mark.covers("cpl.PRN#.grow")
+@pytest.mark.covers("cpl.PRN#.grow", "cpl.PRN#")
 def test_a_file_grows_beyond_what_was_reserved(root: Root) -> None:
     root.run('1 OPENW(1,"P2",130)\n2 FOR I%=1 TO 40\n3 PRN#(1,"0123456789")\n4 NEXT\n5 CLOSE(1)')
     assert root.read("P2") == b"0123456789\n" * 40 + END
@@ -297,7 +297,7 @@ def test_messages_are_formatted_as_files_are(root: Root) -> None:
     ]  # fmt: skip
 
 
-@pytest.mark.covers("cpl.PRN#.control")
+@pytest.mark.covers("cpl.PRN#.control", "cpl.PRN#")
 def test_chr_13_begins_the_next_record(root: Root) -> None:
     root.run('1 OPENW(1,"P2")\n2 PRN#(1,"ONE",CHR$(13),"TWO",CHR$(9),"3")\n3 CLOSE(1)')
     assert root.read("P2") == b"ONE\nTWO\t3\n" + END

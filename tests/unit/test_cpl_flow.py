@@ -547,7 +547,7 @@ def test_a_level_can_be_left_from_outside() -> None:
 # WAIT and functions of the control
 
 
-@pytest.mark.covers("cpl.WAIT.nc")
+@pytest.mark.covers("cpl.WAIT.nc", "cpl.WAIT")
 def test_wait_in_cpl_and_nc_blocks() -> None:
     assert Ran("20 WAIT\nN20 WAIT\nWAIT").events == [Waiting(line, None, None) for line in (1, 2, 3)]
     assert errors("N20 WAIT(,1000)") == ["1:5 WAIT in an NC block stands alone"]

@@ -229,7 +229,7 @@ def test_the_overview_s_shorter_forms_are_read(line: str) -> None:
     assert link_errors(line) == []
 
 
-@pytest.mark.covers("cpl.TRIM$.none")
+@pytest.mark.covers("cpl.TRIM$.none", "cpl.TRIM$")
 def test_trim_without_a_side_takes_blanks_from_both() -> None:
     ran = Ran(
         '1 DIM A$(20)\n2 A$="  AB C   "\n3 #L%=LEN(TRIM$(A$)) : #E?=TRIM$(A$)="AB C" : #N%=LEN(TRIM$("   "))'

@@ -69,7 +69,7 @@ def test_a_bolt_circle_moves_the_axes_where_the_program_reckons() -> None:
     places: list[tuple[int, int | None]] = []
     while started.run.active:
         started.run.advance(20)
-        record = started.run.executed
+        record = started.run.reading.block
         if record is not None and (not places or places[-1] != (record.line, record.sequence)):
             places.append((record.line, record.sequence))
     assert places[0] == (2, 10)
@@ -104,7 +104,7 @@ def test_wait_stands_for_its_duration() -> None:
     assert found["#C%"] - found["#B%"] in range(170, 271)
 
 
-@pytest.mark.covers("cpl.WAIT.result.0", "cpl.WAIT.result.2")
+@pytest.mark.covers("cpl.WAIT.result.0", "cpl.WAIT.result.2", "cpl.WAIT")
 def test_wait_tells_whether_its_condition_held_at_once() -> None:
     started = Started("N10 G1 X20 F6000\n20 WAIT(IC(7)=TRUE,,#E%)\nN30 X30").to_the_end()
     assert started.language.globals["#E%"] == 0
@@ -130,7 +130,7 @@ def test_sub_programs_run_in_the_channel_and_show_on_its_stack() -> None:
     seen: list[tuple[str, int, tuple[tuple[str, int], ...]]] = []
     while started.run.active:
         started.run.advance(20)
-        record = started.run.executed
+        record = started.run.reading.block
         if record is not None:
             entry = (record.program, record.line, tuple((call.program, call.line) for call in record.stack))
             if not seen or seen[-1] != entry:

@@ -175,7 +175,9 @@ def test_colours_are_those_in_force_when_something_is_drawn(tmp_path: Path) -> N
     assert Shown("1 COL(,,,,1,7)", tmp_path).surface.softkey_colours == (1, 7)
 
 
-@pytest.mark.covers("cpl.COL.arg.tab", "cpl.COL.tab.7", "cpl.COL.tab.10", "cpl.color.tables", "cpl.RGB")
+@pytest.mark.covers(
+    "cpl.COL.arg.tab", "cpl.COL.tab.7", "cpl.COL.tab.10", "cpl.color.tables", "cpl.RGB", "cpl.COL"
+)
 def test_a_table_of_colours_erases_the_screen(tmp_path: Path) -> None:
     shown = Shown('1 DSP(1,1,"A") : LIN(5,5,9,5) : RGB(3,10,20,250)\n2 COL(,,,7)\n3 DSP(2,1,"B")', tmp_path)
     assert (shown[1], shown[2], shown.colour(7, 5)) == ("", "B", -1)
@@ -186,7 +188,7 @@ def test_a_table_of_colours_erases_the_screen(tmp_path: Path) -> None:
     assert shown.surface.tables[3] == [*two[:3], (10, 20, 250), *two[4:]]
 
 
-@pytest.mark.covers("cpl.COL.tab.1", "cpl.color.default.graphics_background")
+@pytest.mark.covers("cpl.COL.tab.1", "cpl.color.default.graphics_background", "cpl.COL")
 def test_table_1_and_its_background_are_there_at_the_start_and_on_demand(tmp_path: Path) -> None:
     shown = Shown("1 A=5", tmp_path)
     assert shown.surface.table == 1

@@ -50,6 +50,7 @@ def test_a_handle_is_opened_used_and_closed() -> None:
         assert fwlib.cnc_freelibhndl(handle) == OK
 
 
+@pytest.mark.covers("fanuc.EW_HSSB")
 @pytest.mark.covers("fanuc.cnc_absolute")
 @covers("cnc_allclibhndl2", "range.node")
 def test_nodes_0_to_7_are_controls_of_their_own() -> None:
@@ -97,6 +98,7 @@ def test_the_default_node_can_be_changed_and_nodes_be_listed() -> None:
     assert fwlib.cnc_rdnodenum() == (OK, 2)
 
 
+@pytest.mark.covers("fanuc.EW_HSSB", "fanuc.concept.return_convention")
 @pytest.mark.covers("fanuc.cnc_absolute", "fanuc.cnc_allclibhndl")
 def test_a_fault_of_a_node_is_the_answer_of_every_call() -> None:
     control, _ = attached()
@@ -261,6 +263,7 @@ def test_positions_know_work_offsets_tool_length_and_units() -> None:
     assert read("absolute", handle, 3, 8)[1][0] == read("machine", handle, 3, 8)[1][0] == 4_500
 
 
+@pytest.mark.covers("fanuc.concept.decimal_point")
 @pytest.mark.parametrize(
     ("increment", "inch", "counts"),
     [
@@ -314,15 +317,16 @@ def test_skip_positions_are_those_at_the_signal() -> None:
 @covers("example.cnc_srvdelay", "cnc_srvdelay")
 def test_servo_delay_is_the_following_error() -> None:
     control, handle = attached(servo=True, axes=2)
-    registered(control, O5="\nG1 X60. F3000\nM30\n")
+    registered(control, O5="\nG1 X60. Y-45. F3000\nM30\n")  # 75 mm along both, 40 and -30 mm/s
     running(control, 5)
     control.advance(800)
     delays = read("srvdelay", handle, ALL_AXES, 12)[1]
-    assert delays[0] == pytest.approx(50.0 / 30.0 * 1000, rel=0.1)  # speed by loop gain
-    assert delays[1] == 0
-    axis = control.status().axes["X"]
-    assert delays[0] == round((axis.setpoint - axis.actual) * 1000)
-    assert read("absolute", handle, 1, 8)[1][0] == round(axis.actual * 1000)
+    assert delays[0] == pytest.approx(40.0 / 30.0 * 1000, rel=0.1)  # speed by loop gain
+    assert delays[1] == pytest.approx(-30.0 / 30.0 * 1000, rel=0.1)
+    for k, axis in enumerate(control.status().axes.values()):
+        assert delays[k] == round((axis.setpoint - axis.actual) * 1000)
+        assert read("absolute", handle, k + 1, 8)[1][0] == round(axis.actual * 1000)
+    assert read("srvdelay", handle, 2, 8)[1][0] == delays[1]
     _, ideal = attached()
     assert read("srvdelay", ideal, ALL_AXES, 16)[1] == [0] * 6
 

@@ -183,6 +183,7 @@ AXIS_TYPES = {
 }
 
 
+@pytest.mark.covers("fanuc.cnc_rdparam.err.EW_ATTRIB", "fanuc.cnc_wrparam", "fanuc.cnc_rdparam")
 @pytest.mark.parametrize("kind", [pytest.param(k, marks=covers(f"paramtype.{k}"), id=k) for k in TYPES])
 @covers("enum.param_axis.0")
 def test_parameters_that_have_one_value(kind: str) -> None:
@@ -206,6 +207,7 @@ def test_parameters_that_have_one_value(kind: str) -> None:
     assert parameter(handle, number) == value
 
 
+@pytest.mark.covers("fanuc.cnc_wrparam")
 @pytest.mark.covers("fanuc.cnc_rdparam")
 @pytest.mark.parametrize(
     "kind", [pytest.param(k, marks=covers(f"paramtype.{k}_axis"), id=k) for k in AXIS_TYPES]
@@ -322,6 +324,7 @@ def test_parameters_that_are_refused_change_nothing() -> None:
     assert fwlib.cnc_rdparam(handle, 6080, 0, 5)[0] == OK  # reading needs no option
 
 
+@pytest.mark.covers("fanuc.cnc_wrparam")
 @covers("concept.bit_param_rmw")
 def test_a_bit_is_changed_by_writing_its_byte() -> None:
     _, handle = attached()

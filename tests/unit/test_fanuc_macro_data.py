@@ -69,6 +69,7 @@ def test_macro_variables_in_decimal_form() -> None:
     assert fwlib.cnc_wrmacro(handle, 137, 12, 5, 0) == OK
 
 
+@pytest.mark.covers("fanuc.cnc_wrmacro")
 @pytest.mark.covers("fanuc.cnc_setmactype")
 @covers("concept.macro_empty")
 def test_vacant_is_not_zero() -> None:
@@ -81,6 +82,7 @@ def test_vacant_is_not_zero() -> None:
         assert (macro(handle, 500), control.macros.get(500)) == ((0, -1), None)
 
 
+@pytest.mark.covers("fanuc.cnc_wrmacro")
 @covers(
     "concept.macro_out_of_range",
     "enum.macro_type.binary",

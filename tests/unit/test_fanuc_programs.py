@@ -66,6 +66,7 @@ def test_a_stream_that_is_cut_leaves_no_half_program() -> None:
     assert fwlib.cnc_dwnstart(handle) == OK
 
 
+@pytest.mark.covers("fanuc.cnc_dwnstart")
 @pytest.mark.covers("fanuc.cnc_search")
 @covers("concept.download_session", "cnc_download.err.EW_FUNC", "cnc_dwnend.err.EW_FUNC")
 def test_download_session() -> None:
@@ -170,6 +171,7 @@ def test_parameters_of_registration() -> None:
     assert (control.programs.read(7), len(control.programs)) == (b"O0007\nM2\n", 3)
 
 
+@pytest.mark.covers("fanuc.EW_OVRFLOW")
 @pytest.mark.covers("fanuc.cnc_delete")
 @covers("cnc_download.err.EW_OVRFLOW", "cnc_dwnend.err.EW_OVRFLOW", "concept.memory_accounting")
 def test_a_full_memory() -> None:
@@ -186,6 +188,7 @@ def test_a_full_memory() -> None:
     unchanged(control, lambda: sent(handle, "\nO9\n%")[1], EW.EW_OVRFLOW)  # two programs are all
 
 
+@pytest.mark.covers("fanuc.EW_RESET")
 @covers("cnc_download.err.EW_RESET")
 @pytest.mark.parametrize("button", ["reset", "feed_hold"])
 def test_reset_and_stop_end_a_download(button: str) -> None:
@@ -408,6 +411,7 @@ MATRIX: list[tuple[Callable[[PowerMate, int], None], dict[str, EW]]] = [
 ]
 
 
+@pytest.mark.covers("fanuc.cnc_delall.err.EW_PROT", "fanuc.cnc_delete.err.EW_PROT")
 @covers(
     "cnc_dwnstart.err.EW_BUSY", "cnc_dwnstart.err.EW_PROT", "cnc_search.err.EW_BUSY", "cnc_delall.err.EW_BUSY",
     "cnc_delete.err.EW_BUSY", "concept.program_busy_conditions", "concept.alarm_ps000_ps101", "concept.op_signal",

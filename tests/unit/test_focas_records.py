@@ -25,6 +25,7 @@ from polycnc.controllers.fanuc.wire import (
 from polycnc.controllers.library import layout
 from polycnc.errors import ProtocolError
 from polycnc.servers.focas import COMMANDS
+from support.often import share
 
 DECLARED = sorted(
     {text for each in LAYOUTS.values() for text in (each.head, each.each, each.data, each.data_each) if text}
@@ -51,7 +52,7 @@ def _value_of(part: Part) -> st.SearchStrategy[Any]:
 
 
 @pytest.mark.parametrize("declared", DECLARED)
-@settings(max_examples=30)
+@settings(max_examples=share(30))
 @given(data=st.data())
 def test_what_is_packed_is_unpacked(declared: str, data: st.DataObject) -> None:
     made = record(declared)

@@ -79,7 +79,7 @@ def run(text: str) -> ProgramRun:
 def test_positions(text: str, expected: tuple[float, float, float]) -> None:
     made = run(text)
     assert made.error is None, str(made.error)
-    assert list(made.position.values()) == pytest.approx(list(expected), abs=1e-9)
+    assert list(made.reading.position.values()) == pytest.approx(list(expected), abs=1e-9)
 
 
 ARC = "G1 X20 Y10\nG2 X26 Y16 I6\n"  # from the left of its centre to above it

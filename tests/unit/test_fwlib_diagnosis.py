@@ -182,6 +182,7 @@ OFFSET = {"IS-A": (2, 3), "IS-B": (3, 4), "IS-C": (4, 5)}
 MACRO = {"IS-A": (3, 4), "IS-B": (3, 4), "IS-C": (4, 5)}
 
 
+@pytest.mark.covers("fanuc.concept.decimal_point")
 @pytest.mark.covers("fanuc.cnc_getfigure", "fanuc.cnc_getfigure.data_type.0", "fanuc.getfigure.valid.axis",
                     "fanuc.param.0000_2", "fanuc.param.1001_0", "fanuc.concept.increment_system")  # fmt: skip
 @pytest.mark.parametrize(

@@ -105,7 +105,8 @@ def test_histories_are_read_while_sampling_is_stopped() -> None:
 
 
 @pytest.mark.covers("fanuc.cnc_rdophistry", "fanuc.ODBHIS.rec_type.0", "fanuc.concept.history_record_kinds")
-@pytest.mark.covers("fanuc.ODBHIS.rec_mdi", "fanuc.ODBHIS.rec_type")
+@pytest.mark.covers("fanuc.ODBHIS.rec_mdi", "fanuc.ODBHIS.rec_type", "fanuc.ODBHIS.rec_mdi.dummy")
+@pytest.mark.covers("fanuc.ODBHIS.key_code", "fanuc.ODBHIS.pw_flag")
 def test_a_key() -> None:
     control, library, handle = fresh()
     control.history.press_key(ord("G"))
@@ -134,6 +135,7 @@ def monitored(library: Any, handle: int, *entries: tuple[int, int, int, int]) ->
 @pytest.mark.covers("fanuc.ODBHIS.rec_type.1", "fanuc.cnc_wrhissgnl")
 @pytest.mark.covers(
     "fanuc.ODBHIS.rec_sgn",
+    "fanuc.ODBHIS.rec_sgn.dummy",
     "fanuc.ODBHIS.sig_name",
     "fanuc.ODBHIS.sig_old",
     "fanuc.ODBHIS.sig_new",
@@ -185,6 +187,8 @@ def test_the_change_of_a_signal(letter: str, number: int) -> None:
 @pytest.mark.covers("fanuc.ODBHIS.rec_type.2")
 @pytest.mark.covers(
     "fanuc.ODBHIS.rec_alm",
+    "fanuc.ODBHIS.rec_alm.dummy",
+    "fanuc.ODBHIS.alm_no",
     "fanuc.ODBHIS.alm_grp",
     "fanuc.ODBHIS.axis_no",
     "fanuc.concept.history_record_kinds",
@@ -214,6 +218,13 @@ def test_unused_alarm_groups_never_appear() -> None:
 @pytest.mark.covers(
     "fanuc.ODBHIS.rec_date",
     "fanuc.ODBHIS.rec_time",
+    "fanuc.ODBHIS.rec_date.dummy",
+    "fanuc.ODBHIS.rec_time.dummy",
+    "fanuc.ODBHIS.month",
+    "fanuc.ODBHIS.day",
+    "fanuc.ODBHIS.hour",
+    "fanuc.ODBHIS.minute",
+    "fanuc.ODBHIS.second",
     "fanuc.ODBHIS.year",
     "fanuc.ODBHIS.pw_flag",
     "fanuc.concept.history_record_kinds",
@@ -284,6 +295,11 @@ def test_reading_is_refused(function: str, first: int, last: int, length: int, c
 
 @pytest.mark.covers("fanuc.cnc_rdalmhistry")
 @pytest.mark.covers(
+    *(f"fanuc.ODBAHIS.{each}" for each in ("s_no", "type", "e_no")),
+    *(
+        f"fanuc.ODBAHIS.alm_his.{each}"
+        for each in ("dummy", "dummy2", "alm_no", "year", "month", "day", "hour", "minute", "second")
+    ),
     "fanuc.ODBAHIS.alm_his.alm_grp",
     "fanuc.ODBAHIS.alm_his.alm_msg",
     "fanuc.ODBAHIS.alm_his.axis_no",
@@ -331,7 +347,8 @@ def test_one_history_is_cleared_alone() -> None:
 # ---------------------------------------------------------------------- monitored signals
 
 
-@pytest.mark.covers("fanuc.cnc_rdhissgnl", "fanuc.IODBSIG.sig_name.0")
+@pytest.mark.covers("fanuc.cnc_rdhissgnl", *(f"fanuc.IODBSIG.sig_name.{number}" for number in (0, 1, 2, 4)))
+@pytest.mark.covers("fanuc.cnc_wrhissgnl")
 @pytest.mark.covers(
     "fanuc.IODBSIG.type",
     "fanuc.IODBSIG.data.ent_no",

@@ -141,6 +141,32 @@ def test_all_groups_at_once_and_those_without_codes() -> None:
     assert list(modal.modal.g_rdata) == [0x81, 8, 1, 0, 0, 1, *[0] * 15]
 
 
+@pytest.mark.covers(
+    "fanuc.ODBMDL.g_rdata", "fanuc.cnc_modal.type.-1", "fanuc.modal.G.undefined", "fanuc.modal.G.20.1"
+)
+@pytest.mark.covers("fanuc.cnc_modal.block.0", "fanuc.cnc_modal.block.1", "fanuc.cnc_modal.block.2")
+@pytest.mark.covers(
+    "fanuc.ODBMDL.datano", "fanuc.ODBMDL.type", "fanuc.ODBMDL.g_data.bit7", "fanuc.ODBMDL.g_data.bits6_0"
+)
+def test_every_group_has_its_own_place_in_the_list_of_all() -> None:
+    library, handle, _ = executing(
+        "S700 M3\nG91 G95\nG18 G44 H2 G3 X8. Z8. R8. F.4\nG19 G12.1 G94 G20 G90 G49 G1\nG66 P9000", "G18"
+    )
+    groups = [0, 1, 2, 4, 5, 7, 11, 20]  # the others have no codes in the manual
+    expected = {
+        0: [0x83, 0x88, 1, 1, 1, 0x82, 0, 0],
+        1: [0x81, 0x84, 0x80, 0x80, 0x80, 0x80, 0, 0x81],
+        2: [1, 4, 0, 0, 0, 0, 0x81, 1],
+    }
+    for block, codes in expected.items():
+        code, modal = library.cnc_modal(handle, -1, block)
+        found = list(modal.modal.g_rdata)
+        assert (code, modal.datano, modal.type, len(found)) == (0, -1, block, 21)
+        assert [found[group] for group in groups] == codes
+        assert not any(found[k] for k in range(21) if k not in groups)
+        assert [g(library, handle, group, block) for group in groups] == codes
+
+
 # ---------------------------------------------------------------------- addresses
 
 NUMBERS = dict(

@@ -114,8 +114,13 @@ def test_a_dwell_keeps_its_path_waiting() -> None:
     control = PowerMate()
     library, handle = at(control)
     cycle_s = control.clock.cycle_s
-    assert library.cnc_dwell(handle, 3, 1, 1, idb((1, 1500)))[0] == 0
-    assert library.cnc_incpoint(handle, 3, 1, 1, 3000, idb((1, 2000)))[0] == 0
+    code, state = library.cnc_dwell(handle, 3, 1, 1, idb((1, 1500)))
+    assert (code, [row[2] for row in state.cdata]) == (
+        0,
+        [4, 0],
+    )  # each call answers with the buffers it leaves
+    code, state = library.cnc_incpoint(handle, 3, 1, 1, 3000, idb((1, 2000)))
+    assert (code, [row[2] for row in state.cdata]) == (0, [4, 4])
     control.advance(round(1.49 / cycle_s))
     assert (machine(control)[0], library.cnc_finstate(handle)[1].cdata[2]) == (0, 0)
     control.advance(round(0.03 / cycle_s))
@@ -141,6 +146,7 @@ def test_setting_a_coordinate() -> None:
 # ---------------------------------------------------------------------- buffers and flags
 
 
+@pytest.mark.covers("fanuc.cnc_refpoint")
 @pytest.mark.parametrize(
     "path",
     [

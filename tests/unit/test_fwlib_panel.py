@@ -87,6 +87,7 @@ def test_a_bit_selects_its_signal_alone(bit: int, name: str, value: int) -> None
 @pytest.mark.covers(
     *(f"fanuc.cnc_rdopnlsgnl.slct_data.bit{bit}" for bit in UNUSED),
     *(f"fanuc.IODBSGNL.type.bit{bit}" for bit in UNUSED),
+    *(f"fanuc.IODBSGNL.{element}" for element in ("datano", "hndl_ax", "hndl_mv", "spdl_ovrd")),
 )
 def test_unused_bits_select_nothing() -> None:
     control = PowerMate()
@@ -282,6 +283,7 @@ def test_a_general_purpose_signal(bit: int) -> None:
     assert library.cnc_rdopnlgnrl(handle, 0xFF)[1].sgnal == 0xFF ^ 1 << bit
 
 
+@pytest.mark.covers("fanuc.cnc_wropnlgsname", "fanuc.cnc_wropnlgnrl")
 @pytest.mark.covers("fanuc.cnc_rdopnlgnrl", "fanuc.cnc_rdopnlgsname")
 @pytest.mark.covers(
     "fanuc.cnc_rdopnlgnrl.slct_data.bits15_8", "fanuc.cnc_wropnlgnrl.type.bits15_8",

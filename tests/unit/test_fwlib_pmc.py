@@ -150,12 +150,19 @@ def test_protected_addresses_are_not_written(kind: int, first: int, count: int) 
     "fanuc.IODBPMC.u.idata",
     "fanuc.IODBPMC.u.ldata",
 )
+@pytest.mark.covers("fanuc.pmc_wrpmcrng", "fanuc.pmc_rdpmcrng", "fanuc.pmc.adr_type.9")
+@pytest.mark.covers("fanuc.IODBPMC.type_a", "fanuc.IODBPMC.datano_s", "fanuc.IODBPMC.datano_e")
 def test_items_of_a_type(data_type: int, last: int, length: int, member: str, values: list[int]) -> None:
     control = PowerMate()
     library, handle = at(control)
     control.pmc.write("D", 40, b"\x12\x34\x56\xfe")
     code, found = library.pmc_rdpmcrng(handle, D, data_type, 40, last, length)
     assert (code, list(getattr(found.u, member))) == (0, values)
+    assert (found.type_a, found.type_d, found.datano_s, found.datano_e) == (9, data_type, 40, last)
+    buf = fwlib.IODBPMC(type_a=9, type_d=data_type, datano_s=1850, datano_e=1850 + last - 40)
+    getattr(buf.u, member)[: len(values)] = values
+    assert library.pmc_wrpmcrng(handle, length, buf) == 0
+    assert control.pmc.read("D", 1849, 1854) == b"\0\x12\x34\x56\xfe\0"
 
 
 @pytest.mark.parametrize(

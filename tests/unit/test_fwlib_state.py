@@ -55,6 +55,7 @@ def test_system_of_the_manuals_sample() -> None:
     assert bytes(system) == b"\0\0\6\0PM H88800014 4"
 
 
+@pytest.mark.covers("fanuc.cnc_sysinfo")
 @pytest.mark.covers("fanuc.ODBSYS.mt_type.D")
 def test_system_of_a_power_mate_d() -> None:
     library, handle = at(PowerMate(model="D", axes=1))

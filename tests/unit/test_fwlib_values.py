@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import ctypes
 from collections.abc import Callable
 from datetime import datetime
+from functools import partial
 from typing import Any
 
 import pytest
@@ -89,6 +91,7 @@ def test_alarms_as_bits_and_by_number() -> None:
     assert (code, found.u.alm1.alm[0].alm_no, found.u.alm1.alm[0].axis) == (OK, 417, 3)
 
 
+@pytest.mark.covers("fanuc.cnc_statinfo")
 @covers("ODBST.run", "ODBST.motion", "ODBST.emergency", "ODBST.edit")
 def test_the_state_of_a_control_that_runs_holds_dwells_and_stops() -> None:
     control, handle = attached(axes=1)
@@ -166,6 +169,7 @@ def test_pmc_data_say_what_they_are_of() -> None:
     assert control.pmc.read("R", 111, 113) == b"\x11\x22\x33"
 
 
+@pytest.mark.covers("fanuc.pmc_rdpmcinfo")
 @covers("ODBPMCINF.info.pmc_adr", "ODBPMCINF.info.top_num", "ODBPMCINF.info.last_num")
 def test_pmc_areas_have_a_letter_and_ends() -> None:
     _, handle = attached()
@@ -177,6 +181,7 @@ def test_pmc_areas_have_a_letter_and_ends() -> None:
     assert fwlib.pmc_rdpmcrng(handle, 7, 0, 20, 20, 9)[0] == EW.EW_NUMBER
 
 
+@pytest.mark.covers("fanuc.cnc_wrparam", "fanuc.cnc_rdparam", "fanuc.ALL_AXES")
 @covers("IODBPSD.datano", "IODBPSD.type", "IODBPSD.u.ldata", "IODBPSD.u.ldatas")
 def test_stroke_limits_are_written_and_read_by_number_and_axis() -> None:
     control, handle = attached()
@@ -189,7 +194,7 @@ def test_stroke_limits_are_written_and_read_by_number_and_axis() -> None:
     assert control.machine.config.axes[1].soft_limits[1] == 98.765
 
 
-@covers("IODBPSD.u.cdata", "IODBPSD.u.idata", "IODBPSD.u.idatas")
+@covers("IODBPSD.u.cdata", "IODBPSD.u.cdatas", "IODBPSD.u.idata", "IODBPSD.u.idatas")
 def test_parameters_of_bits_and_words_act() -> None:
     control, handle = attached()
     assert fwlib.cnc_wrparam(handle, 5, psd(3202, 0, cdata=0x11)) == OK
@@ -202,6 +207,7 @@ def test_parameters_of_bits_and_words_act() -> None:
     assert [control.parameters.value(1851, axis) for axis in (1, 2, 3)] == [7, -8, 9]
 
 
+@pytest.mark.covers("fanuc.cnc_rdparainfo")
 @pytest.mark.covers("fanuc.cnc_wrparas")
 @covers("ODBPARAIF.info.prm_type", "paramtype.two_word", "paramtype.word", "paramtype.byte", "paramtype.bit")
 @pytest.mark.parametrize(("number", "size"), [(3202, 1), (6710, 1), (1410, 2), (6711, 4)])
@@ -248,6 +254,9 @@ def test_diagnosis_data_of_a_control_that_moves() -> None:
     assert places[1].machine < 0 < places[0].machine
 
 
+@pytest.mark.covers(
+    "fanuc.concept.position_contents", "fanuc.concept.dynamic_snapshot", "fanuc.cnc_rddynamic"
+)
 @pytest.mark.covers("fanuc.cnc_rdseqnum")
 @covers("ODBDY.pos.faxis.absolute", "ODBDY.pos.faxis.machine", "ODBDY.pos.faxis.relative", "ODBSEQ.data")
 def test_positions_of_all_axes_at_once() -> None:
@@ -313,12 +322,12 @@ def test_an_operation_signal_has_the_value_that_is_given() -> None:
 def test_modules_of_the_control() -> None:
     control, handle = attached()
     control.configuration = Configuration(
-        from_module="2 MB", dram_module="2 MB", pmc_module="PMP module", sub_board="M-NET"
+        from_module="2 MB", dram_module="2.5 MB", pmc_module="PMP module", sub_board="M-NET"
     )
     found = fwlib.cnc_sysconfig(handle)[1]
     other = attached()[1]
     usual = fwlib.cnc_sysconfig(other)[1]
-    assert (found.pmcmin, found.submin) == (2, 3)
+    assert (found.pmcmin, found.submin, found.frmmin, found.drmmin) == (2, 3, 0, 1)
     assert (usual.pmcmin, usual.submin) == (0, -1)
     assert found.frmmin != usual.frmmin
     assert found.drmmin != usual.drmmin
@@ -394,3 +403,95 @@ def test_a_servo_is_off_by_the_bit_of_its_axis(axis: int) -> None:
     assert [control.signals.state.servo_is_off(each) for each in range(1, 7)] == [
         each == axis for each in range(1, 7)
     ]
+
+
+UNUSED = {  # beside the elements that are called dummy
+    "ODBDY": ("acts",), "IODBSIG": ("datano", "type"), "ODBHIS": ("type",), "ODBAHIS": ("type",),
+    "ALM_HIS": ("alm_grp",), "REC_ALM": ("axis_no",), "REC_MDI": ("pw_flag",),
+    "ODBSYSC": ("slot_no_p", "slot_no_l", "mod_id", "m_rom", "s_rom", "spl1_soft", "spl2_soft"),
+    "IODBSGNL": ("datano", "hndl_ax", "hndl_mv", "spdl_ovrd"), "IODBGNRL": ("datano",), "IODBRDNA": ("datano",),
+}  # fmt: skip
+RECORDS = ("rec_mdi", "rec_sgn", "rec_alm", "rec_date", "rec_time")  # by what their rec_type says
+
+
+def unused(memory: Any) -> dict[str, bytes]:
+    """Return the elements of a structure that the manual leaves unused, those of its records too."""
+    kind = type(memory).__name__
+    if kind == "ODBHIS_DATA":
+        return unused(getattr(memory, RECORDS[memory.rec_mdi.rec_type]))
+    found = {}
+    raw = bytes(memory)
+    for name, *_ in type(memory)._fields_:
+        value, place = getattr(memory, name), getattr(type(memory), name)
+        if name.startswith("dummy") or name in UNUSED.get(kind, ()):
+            found[f"{kind}.{name}"] = raw[place.offset : place.offset + place.size]
+        for each in value if isinstance(value, ctypes.Array) else (value,):
+            if isinstance(each, (ctypes.Structure, ctypes.Union)):
+                found |= unused(each)
+    return found
+
+
+READS: tuple[Callable[[int], tuple[Any, ...]], ...] = (
+    fwlib.cnc_actf, fwlib.cnc_rdprgnum, fwlib.cnc_rdseqnum, fwlib.cnc_exebufstat, fwlib.cnc_finstate, fwlib.cnc_sysinfo,
+    fwlib.cnc_sysconfig, fwlib.cnc_statinfo, fwlib.cnc_alarm, fwlib.cnc_rdhissgnl,
+    *(partial(read, axis=ALL_AXES, length=28) for read in (
+        fwlib.cnc_absolute, fwlib.cnc_machine, fwlib.cnc_relative, fwlib.cnc_distance, fwlib.cnc_srvdelay,
+        fwlib.cnc_accdecdly, fwlib.cnc_skip,
+    )),
+    lambda handle: fwlib.cnc_rddynamic(handle, 2, 22 + 16),
+    lambda handle: fwlib.cnc_rdmacro(handle, 502, 10),
+    lambda handle: fwlib.cnc_rdmacror(handle, 502, 504, 6 + 3 * 6),
+    lambda handle: fwlib.cnc_upload(handle, 5)[:2],
+    lambda handle: fwlib.cnc_rdophistry(handle, 2, 6, 6 + 5 * 8),
+    lambda handle: fwlib.cnc_rdalmhistry(handle, 1, 2, 6 + 2 * 48),
+    lambda handle: fwlib.cnc_rdopnlsgnl(handle, 0x1FB9),
+    lambda handle: fwlib.cnc_rdopnlgnrl(handle, 0xFF),
+    lambda handle: fwlib.cnc_rdopnlgsname(handle, 0xFF),
+)  # fmt: skip
+
+
+@covers(
+    "ODBACT.dummy", "ODBAXIS.dummy", "ODBDY.dummy", "ODBDY.acts", "ODBUP.dummy", "ODBPRO.dummy", "ODBSEQ.dummy",
+    "ODBM.dummy", "IODBMR.dummy", "ODBHIS.type", "ODBHIS.axis_no", "ODBHIS.pw_flag", "ODBHIS.rec_alm.dummy",
+    "ODBHIS.rec_mdi.dummy", "ODBHIS.rec_sgn.dummy", "ODBHIS.rec_date.dummy", "ODBHIS.rec_time.dummy", "ODBAHIS.type",
+    "ODBAHIS.alm_his.dummy", "ODBAHIS.alm_his.alm_grp", "ODBAHIS.alm_his.dummy2", "IODBSIG.datano", "IODBSIG.type",
+    "ODBEXEC.dummy", "ODBFIN.dummy", "ODBSYS.dummy", "ODBSYSC.slot_no_p", "ODBSYSC.slot_no_l", "ODBSYSC.mod_id",
+    "ODBSYSC.dummy1", "ODBSYSC.m_rom", "ODBSYSC.s_rom", "ODBSYSC.spl1_soft", "ODBSYSC.spl2_soft", "ODBSYSC.dummy2",
+    "ODBST.dummy", "ODBALM.dummy", "IODBSGNL.datano", "IODBSGNL.hndl_ax", "IODBSGNL.hndl_mv", "IODBSGNL.spdl_ovrd",
+    "IODBGNRL.datano", "IODBRDNA.datano",
+)  # fmt: skip
+def test_what_the_manual_leaves_unused_is_zero_whatever_the_control_does() -> None:
+    control, handle = attached(options=("custom_macro", "pmc_axis", "pmc"))
+    control.parameters.set(8003, 1 << 7)
+    control.clock.set_now(AT)
+    sig = fwlib.IODBSIG(type=1)
+    first = sig.data[0]
+    for field, value in zip(("ent_no", "sig_no", "sig_name", "mask_pat"), (1, 44, 2, 0xFF), strict=True):
+        setattr(first, field, value)
+    assert fwlib.cnc_wrhissgnl(handle, sig) == OK
+    assert fwlib.cnc_clearophis(handle, 0) == fwlib.cnc_clearophis(handle, 1) == OK
+    for number in (502, 503, 504):
+        control.macros.set(number, number - 7.75)
+    for number, axis in ((85, None), (417, 3)):
+        control.raise_alarm(number, axis=axis)
+    control.history.press_key(0x47)
+    control.pmc.write("G", 44, b"\x53")
+    control.power_cycle()
+    assert fwlib.cnc_stopophis(handle) == OK
+    panel = fwlib.IODBSGNL(
+        type=0x39, mode=1, hndl_ax=2, hndl_mv=3, spdl_ovrd=4, rpd_ovrd=2, jog_ovrd=9, feed_ovrd=7
+    )
+    assert fwlib.cnc_wropnlsgnl(handle, panel) == OK
+    registered(control, O7="\nN25G1X60.Y-30.Z20.F3000\nM30\n")
+    assert fwlib.cnc_upstart(handle, 7) == OK
+    running(control, 7)
+    control.advance(60)
+    control.raise_alarm(2003)
+    seen: dict[str, bytes] = {}
+    for read in READS:
+        code, memory = read(handle)
+        assert code == OK, read
+        assert any(bytes(memory)) or isinstance(memory, (fwlib.ODBEXEC, fwlib.ODBFIN, fwlib.ODBAXIS)), memory
+        seen |= unused(memory)
+    assert {each: memory for each, memory in seen.items() if any(memory)} == {}
+    assert len(seen) == 43

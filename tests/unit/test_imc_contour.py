@@ -80,6 +80,7 @@ def test_an_empty_queue_ends_contouring_and_new_points_go_on() -> None:
     assert card.read("curpos") == 6 + 50 * 2 // 3
 
 
+@pytest.mark.covers("imc.param.vellim", "imc.param.error")
 def test_too_large_a_displacement_is_a_speed_error() -> None:
     card = ready_card()
     set_now(card, ("vellim", 30))
@@ -127,15 +128,18 @@ def test_probe_pulses_are_captured_while_capture_is_on() -> None:
 @pytest.mark.parametrize("name", ["capture", "capture2"])
 def test_a_write_captures_the_position_of_this_moment(name: str) -> None:
     card = ready_card()
+    set_now(card, ("encpfactor", 0.5))  # the encoder, not the command, is captured
     send(card, IFIFO, ("mcstgvel", 10))
     card.advance(33)
     here = card.read("encp")
+    assert 0 < here < card.read("curpos")
     send(card, IFIFO, (name, FLAG))
     card.advance(10)
     assert card.read("cappos") == here < card.read("encp")
     assert card.read_capture(0, 5) == ((here,), 0)
 
 
+@pytest.mark.covers("imc.param.encpctr")
 def test_a_touch_of_the_probe_captures_once() -> None:
     card = ready_card()
     set_now(card, ("encpctr", 0x400), ("mcstgvel", 5))

@@ -14,6 +14,7 @@ from polycnc.controllers.imc.core._events import scale
 from polycnc.controllers.imc.core._instructions import Event, InstallEvents
 from polycnc.controllers.imc.core._parameters import address
 from support.imc_card import FLAG, IFIFO, QFIFO, event, install, move_absolute, ready_card, send, set_now
+from support.often import share
 
 A16, B16, R16 = (address(f"user16b{k}") for k in (1, 2, 0))
 A32, B32, R32 = (address(f"user32b{k}") for k in (1, 2, 0))
@@ -106,7 +107,7 @@ def test_every_command_computes_in_twos_complement(command: str, immediate: bool
         assert stored == expected, (a, b)
 
 
-@settings(deadline=None, max_examples=100)
+@settings(deadline=None, max_examples=share(100))
 @given(st.integers(-(2**47), 2**47 - 1), st.integers(-(2**47), 2**47 - 1))
 def test_scaling_is_exact_and_rounds_down(value: int, factor: int) -> None:
     exact = value * factor >> 32

@@ -45,13 +45,14 @@ def gear(card, ratio: float, source: int = CURVEL, master: int = 0, axis: int = 
     )
 
 
+@pytest.mark.covers("imc.param.gearratio", "imc.param.mcsaccel", "imc.param.mcsdecel")
 @pytest.mark.covers("imc.param.engear", "imc.param.master", "imc.param.gearsrc", "imc.concept.gear_law")
 def test_a_free_gear_ramps_to_ratio_times_the_source_and_follows_a_new_ratio() -> None:
     card = ready_card()
-    send(card, IFIFO, ("mcstgvel", 10))
+    send(card, IFIFO, ("mcstgvel", 10, 2))
     card.advance(20)
     set_now(card, ("mcsaccel", 0.5, 1), ("mcsdecel", 2, 1))
-    gear(card, 0.5)
+    gear(card, 0.5, master=2)
     assert trace(card, "mcsvel", 12, 1)[:3] == [0.5, 1, 1.5]
     assert card.read("mcsvel", 1) == 5
     assert card.read("mcsslope", 1) == 0
@@ -59,9 +60,9 @@ def test_a_free_gear_ramps_to_ratio_times_the_source_and_follows_a_new_ratio() -
     assert trace(card, "mcsvel", 4, 1) == [3, 1, 0, -0.5]
     card.advance(30)
     assert card.read("mcsvel", 1) == -10
-    set_now(card, ("mcstgvel", 30))  # the locked slave keeps up whatever its own rates are
+    set_now(card, ("mcstgvel", 30, 2))  # the locked slave keeps up whatever its own rates are
     card.advance(15)
-    assert card.read("mcsvel", 1) == -card.read("mcsvel", 0)
+    assert card.read("mcsvel", 1) == -card.read("mcsvel", 2) < -20
 
 
 @pytest.mark.covers("imc.param.gearratio", "imc.concept.gear_law")
@@ -125,6 +126,7 @@ def test_a_slave_that_leaves_keeps_its_speed_or_takes_another(mode: int, speed: 
     assert card.read("mcsvel", 1) == after
 
 
+@pytest.mark.covers("imc.param.engear")
 @pytest.mark.covers("imc.param.encs", "imc.param.encsvel", "imc.param.encsfactor", "imc.param.clrencs")
 def test_a_handwheel_moves_its_axis_by_counts_times_ratio() -> None:
     card = ready_card()
@@ -145,6 +147,7 @@ def test_a_handwheel_moves_its_axis_by_counts_times_ratio() -> None:
     assert (card.read("encs", 3), card.read("curpos", 0)) == (1, 10)
 
 
+@pytest.mark.covers("imc.param.encs")
 def test_a_steady_handwheel_gives_a_steady_speed() -> None:
     card = ready_card()
     gear(card, 2, ENCSVEL)
@@ -205,6 +208,7 @@ def test_an_event_starts_the_engagement() -> None:
     assert card.read("curvel", 1) == 10
 
 
+@pytest.mark.covers("imc.param.synsrc", "imc.param.synsrcvar", "imc.param.enasyn", "imc.param.startsyn")
 @pytest.mark.covers("imc.concept.gear_time_law")
 def test_a_gear_engages_over_a_time() -> None:
     card = ready_card()
@@ -228,6 +232,7 @@ def _timed(card, cycles: int, axis: int = 1) -> None:  # type: ignore[no-untyped
     set_now(card, ("synsrc", address("ticks"), axis), ("synsrcvar", cycles, axis), ("enasyn", FLAG, axis))
 
 
+@pytest.mark.covers("imc.param.synsrcvar", "imc.param.enasyn", "imc.param.startsyn")
 @pytest.mark.covers("imc.param.syntype", "imc.param.slavedist", "imc.param.slaveabs", "imc.concept.sync_laws")
 @pytest.mark.parametrize(("absolute", "distance", "end"), [(0, 5000, 5100), (FLAG, 5000, 5000), (0, -70, 30)])
 def test_a_distance_is_moved_in_a_time_and_ends_at_rest(absolute: int, distance: int, end: int) -> None:
@@ -249,6 +254,9 @@ def test_a_distance_is_moved_in_a_time_and_ends_at_rest(absolute: int, distance:
     assert (card.read("curvel", 1), card.read("moving", 1), card.read("curpos", 1)) == (0, 0, end)
 
 
+@pytest.mark.covers(
+    "imc.param.syntype", "imc.param.synsrc", "imc.param.synaxis", "imc.param.synsrcvar", "imc.param.slavedist"
+)
 @pytest.mark.covers("imc.param.enasyn")
 @pytest.mark.parametrize("name", ["curpos", "encp", "mcspos", "pcspos", "encs"])
 def test_a_distance_is_moved_within_the_distance_of_another_parameter(name: str) -> None:
@@ -272,6 +280,7 @@ def test_a_distance_is_moved_within_the_distance_of_another_parameter(name: str)
     assert (card.read("curpos", 1), card.read("moving", 1), card.read("startsyn", 1)) == (500, 0, 0)
 
 
+@pytest.mark.covers("imc.param.syntype")
 def test_a_velocity_is_reached_in_a_time_and_kept() -> None:
     card = ready_card()
     send(card, IFIFO, ("mcstgvel", 20, 1))
@@ -290,15 +299,16 @@ def test_a_velocity_is_reached_in_a_time_and_kept() -> None:
     assert card.read("mcsvel", 1) == 0
 
 
+@pytest.mark.covers("imc.param.synsrc", "imc.param.synaxis", "imc.param.synsrcvar", "imc.param.enasyn")
 def test_a_velocity_is_reached_within_a_distance_of_another_axis() -> None:
     card = ready_card()
-    set_now(card, ("synsrc", address("mcspos"), 1), ("synaxis", 0, 1), ("synsrcvar", 1000, 1))
-    send(card, IFIFO, ("mcstgvel", 40, 1), ("startsyn", FLAG, 1), ("mcstgvel", 10, 0))
+    set_now(card, ("synsrc", address("mcspos"), 1), ("synaxis", 2, 1), ("synsrcvar", 1000, 1))
+    send(card, IFIFO, ("mcstgvel", 40, 1), ("startsyn", FLAG, 1), ("mcstgvel", 10, 2))
     card.advance(50)
     assert card.read("mcsvel", 1) == 0
-    began = card.read("mcspos")
+    began = card.read("mcspos", 2)
     send(card, IFIFO, ("enasyn", FLAG, 1))
-    while card.read("mcspos") < began + 500:
+    while card.read("mcspos", 2) < began + 500:
         card.advance(1)
     assert card.read("mcsvel", 1) == pytest.approx(20, abs=0.5)
     card.advance(60)
@@ -519,6 +529,7 @@ def test_a_path_or_contour_takes_a_slave_out_of_its_gear(mover: str) -> None:
     assert card.read("moving", 1) == 0
 
 
+@pytest.mark.covers("imc.param.mcsdecel", "imc.param.startsyn")
 def test_taking_startsyn_back_brakes_with_the_rate_of_the_axis() -> None:
     card = ready_card()
     set_now(card, ("syntype", FLAG, 1), ("slavedist", 5000, 1), ("mcsdecel", 2, 1))

@@ -86,6 +86,7 @@ def _place(card: Card, position: int) -> None:
     card.wait()
 
 
+@pytest.mark.covers("imc.concept.homing")
 @pytest.mark.covers("imc.concept.same_edge", "imc.param.lowvel")
 @pytest.mark.parametrize(
     ("start", "negative", "rising"), [(0, False, True), (9000, True, False), (0, False, False)]
@@ -120,6 +121,7 @@ def test_index_pulses_count_from_the_edge(returns: int, number: int, pulse: int)
     assert origin(card) == pulse
 
 
+@pytest.mark.covers("imc.param.indexNum")
 @pytest.mark.parametrize(
     ("negative", "number", "pulse"), [(False, 1, 37), (False, 4, 3037), (True, 2, -1963)]
 )
@@ -132,6 +134,7 @@ def test_index_pulses_alone_count_from_the_start(negative: bool, number: int, pu
     assert card.read("counter") == number
 
 
+@pytest.mark.covers("imc.param.homepos")
 @pytest.mark.covers("imc.const.stop")
 @pytest.mark.parametrize("returns", [0, 1, 2])
 def test_it_can_go_to_a_place_in_the_end(returns: int) -> None:
@@ -144,6 +147,7 @@ def test_it_can_go_to_a_place_in_the_end(returns: int) -> None:
     assert [card.read(name) for name in ("homed", "moving", "mcsgo", "poserr")] == [FLAG, 0, 0, 0]
 
 
+@pytest.mark.covers("imc.param.lowvel", "imc.param.highvel")
 @pytest.mark.parametrize("index", [0, 1])
 @pytest.mark.parametrize("returns", [0, 1, 2])
 @pytest.mark.parametrize("top", [0, 55])
@@ -160,6 +164,7 @@ def test_the_closing_move_has_the_speed_of_the_last_stage_whatever_mcsmaxvel_is(
     assert max(abs(b - a) for a, b in pairwise(speeds)) <= 2  # mcsaccel, in whole pulses: it never stops dead
 
 
+@pytest.mark.covers("imc.param.highvel")
 @pytest.mark.parametrize("top", [0, 55])
 def test_the_closing_move_after_index_pulses_alone_has_highvel(top: int) -> None:
     card = ready_card(AXIS)
@@ -176,6 +181,7 @@ def test_an_origin_switch_that_is_low_when_on_has_its_edges_the_other_way() -> N
     assert origin(card) == 5600
 
 
+@pytest.mark.covers("imc.param.homeseq", "imc.param.gohome")
 def test_the_known_value_of_homeseq_searches_the_switch_in_positive_direction() -> None:
     card = ready_card(AXIS)
     send(card, IFIFO, ("homeseq", 0x14), ("gohome", FLAG))
@@ -243,6 +249,7 @@ def test_any_value_but_0_starts_a_search_and_shows_as_a_flag() -> None:
     assert card.read("curvel") > 0
 
 
+@pytest.mark.covers("imc.param.encpfactor", "imc.param.homepos")
 def test_the_origin_that_is_passed_counts_in_the_scale_of_the_encoder() -> None:
     card = ready_card(AXIS + "counts_per_pulse = 4.0\n")
     set_now(card, ("encpfactor", 0.375), ("homepos", 230))

@@ -102,6 +102,7 @@ def test_several_parameters_are_written_in_the_same_cycle(program: Program) -> N
     assert program.get("mcspos", 3) == 500
 
 
+@pytest.mark.covers("imc.struct.WR_MUL_DES", "imc.param.encp")
 @pytest.mark.covers("imc.IMC_GetMulParam")
 def test_several_parameters_are_read_at_one_moment(program: Program) -> None:
     for axis in range(4):
@@ -115,6 +116,7 @@ def test_several_parameters_are_read_at_one_moment(program: Program) -> None:
     assert places[1].data[0] + (places[1].data[1] << 16) == -100_000 & 0xFFFFFFFF
 
 
+@pytest.mark.covers("imc.concept.atomic_rmw", "imc.param.gio")
 @pytest.mark.covers(
     "imc.IMC_SetParamBit", "imc.IMC_ORXORParam", "imc.IMC_TurnParamBit", "imc.IMC_GetParamBit"
 )
@@ -150,6 +152,7 @@ def test_a_wait_holds_its_queue_and_no_other(program: Program) -> None:
     assert program.get("user16b0") == 1
 
 
+@pytest.mark.covers("imc.IMC_WaitTime")
 @pytest.mark.covers("imc.IMC_ClearFIFO")
 @pytest.mark.parametrize("endless", [0, -1])
 def test_clearing_ends_an_endless_wait(program: Program, endless: int) -> None:
@@ -215,6 +218,7 @@ def test_waits_end_with_their_time_and_without_an_error(
     )
 
 
+@pytest.mark.covers("imc.IMC_WaitParamMask")
 def test_a_mask_that_cannot_be_met_ends_with_its_time(program: Program) -> None:
     program.card.write("user16b0", 0x1234)
     program.ok(lib.IMC_WaitParamMask, lib.user16b0Loc, 0x00FF, 0x1234, 50, 0, Q)
@@ -322,6 +326,7 @@ def test_arcs(program: Program, name: str, clockwise: bool) -> None:
         assert max(speeds) == pytest.approx(10.0, abs=1.5)
 
 
+@pytest.mark.covers("imc.IMC_AddLineN", "imc.IMC_AddArc")
 def test_relative_segments_count_from_where_the_axes_are(program: Program) -> None:
     prepare(program, 0, 1, absolute=False)
     program.ok(lib.IMC_AddLineN, lib.PFIFOSegData.of(300, 100), P1)
@@ -333,6 +338,15 @@ def test_relative_segments_count_from_where_the_axes_are(program: Program) -> No
     assert max(y for _, y in track) == pytest.approx(340, abs=2)
 
 
+@pytest.mark.covers(
+    "imc.concept.contour",
+    "imc.concept.cfifo",
+    "imc.param.groupnum",
+    "imc.param.groupsmooth",
+    "imc.param.cfifocnt",
+    "imc.param.startgroup",
+    "imc.param.contouring",
+)
 @pytest.mark.covers("imc.IMC_AddContourData")
 def test_contour_points_are_spread_over_their_cycles(program: Program) -> None:
     program.set("groupnum", 3)
@@ -356,6 +370,7 @@ def test_contour_points_are_spread_over_their_cycles(program: Program) -> None:
     assert program.get("contouring", 0) == 0
 
 
+@pytest.mark.covers("imc.event.CMD_CMP32i", "imc.event.CMD_SET16", "imc.concept.event_flags")
 @pytest.mark.covers("imc.IMC_InstallEvent")
 def test_an_event_starts_something_when_a_position_is_reached(program: Program) -> None:
     reached = [
@@ -372,6 +387,7 @@ def test_an_event_starts_something_when_a_position_is_reached(program: Program) 
     assert program.get("user16b0") == 0  # only once
 
 
+@pytest.mark.covers("imc.concept.event_space", "imc.param.events")
 @pytest.mark.covers("imc.IMC_InstallEvent")
 def test_the_card_holds_128_events(program: Program) -> None:
     event = lib.EventInfo.of(lib.CMD_ADD32i, src1=(317, 0), src2=1, dest=(317, 0))
@@ -401,6 +417,7 @@ def test_reading_back_needs_no_queue(program: Program) -> None:
     assert lib.IMC_GetCapData(program.handle, 5, 0) == (lib.IMC_OK, [], 0, 0)
 
 
+@pytest.mark.covers("imc.IMC_SetParamBit", "imc.bit.encpctr.10", "imc.concept.capfifo", "imc.param.encpctr")
 @pytest.mark.covers("imc.IMC_GetCapData")
 def test_the_probe_captures_while_it_is_let(program: Program) -> None:
     program.ok(lib.IMC_MoveVelocity, 10 * 65536, 0, IF)

@@ -123,6 +123,7 @@ def test_contour_points_go_to_queues_of_points_only(card: ToldCard, handle: lib.
     assert card.cleared == list(range(5))
 
 
+@pytest.mark.covers("imc.status.IMC_FIFO_FULL")
 def test_a_full_queue_refuses_and_nothing_is_sent_again(card: ToldCard, handle: lib.IMC_HANDLE) -> None:
     card.full = True
     for name, arguments in {**SENDERS, **WAITERS, **PATHS}.items():
@@ -135,6 +136,7 @@ def test_a_full_queue_refuses_and_nothing_is_sent_again(card: ToldCard, handle: 
 AXIS_LAST = sorted(set(SENDERS) - {"IMC_SetMulParam", "IMC_InstallEvent"})
 
 
+@pytest.mark.covers("imc.status.IMC_INVALID_AXIS")
 @pytest.mark.covers("imc.IMC_GetCapData", "imc.IMC_GetParamBit")
 @pytest.mark.covers("imc.const.AXISNUM")
 def test_axes_that_the_card_does_not_have(card: ToldCard, handle: lib.IMC_HANDLE) -> None:
@@ -170,6 +172,7 @@ def test_the_axis_of_a_parameter_of_the_card_does_not_matter(card: ToldCard, han
     assert len(card.told) == 2
 
 
+@pytest.mark.covers("imc.status.IMC_INVALID_PARAM")
 @pytest.mark.covers(
     "imc.IMC_GetParam16",
     "imc.IMC_GetParam32",
@@ -188,6 +191,7 @@ def test_addresses_without_a_parameter(card: ToldCard, handle: lib.IMC_HANDLE) -
     assert card.told == []
 
 
+@pytest.mark.covers("imc.status.IMC_PARAM_READ_ONLY")
 @pytest.mark.covers("imc.IMC_GetParam16")
 @pytest.mark.parametrize("name", ["mcsmoving", "curpos", "naxis", "fwversion", "gin1", "poserr"])
 def test_parameters_that_cannot_be_written(card: ToldCard, handle: lib.IMC_HANDLE, name: str) -> None:
@@ -207,6 +211,7 @@ def test_parameters_that_cannot_be_written(card: ToldCard, handle: lib.IMC_HANDL
     assert card.told == []
 
 
+@pytest.mark.covers("imc.status.IMC_OUT_OF_RANGE")
 @pytest.mark.covers("imc.IMC_GetCapData")
 @pytest.mark.covers("imc.const.limits")
 def test_numbers_out_of_range(card: ToldCard, handle: lib.IMC_HANDLE) -> None:

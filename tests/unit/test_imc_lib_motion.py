@@ -20,6 +20,7 @@ def program() -> Iterator[Program]:
     lib.detach()
 
 
+@pytest.mark.covers("imc.param.mcstgpos", "imc.param.mcsdist", "imc.param.mcsgo")
 @pytest.mark.covers("imc.IMC_MoveAbsolute")
 def test_absolute_move(program: Program) -> None:
     program.ok(lib.IMC_MoveAbsolute, 6250, 1, Q)
@@ -31,6 +32,7 @@ def test_absolute_move(program: Program) -> None:
     assert (program.get("curpos", 1), program.get("curpos", 0)) == (-100, 0)
 
 
+@pytest.mark.covers("imc.IMC_MoveAbsolute", "imc.IMC_WaitParam", "imc.param.moving")
 @pytest.mark.covers("imc.IMC_MoveRelative")
 def test_relative_move_counts_from_where_the_axis_is_when_it_starts(program: Program) -> None:
     program.ok(lib.IMC_MoveAbsolute, 1000, 0, Q)
@@ -53,6 +55,13 @@ def test_a_relative_move_by_nothing_goes_nowhere(program: Program, move: str, sy
     assert program.get("curpos") == 0
 
 
+@pytest.mark.covers(
+    "imc.IMC_MoveVelocity",
+    "imc.concept.mcs_pcs",
+    "imc.concept.superposition",
+    "imc.param.pcsdist",
+    "imc.param.pcspos",
+)
 @pytest.mark.covers("imc.IMC_MoveSuperimposed")
 def test_superimposed_move_adds_to_what_the_axis_does(program: Program) -> None:
     for axis in (0, 1):
@@ -64,6 +73,7 @@ def test_superimposed_move_adds_to_what_the_axis_does(program: Program) -> None:
     assert (program.get("pcspos", 1), program.get("mcsvel", 1)) == (250, 10 * 65536)
 
 
+@pytest.mark.covers("imc.concept.jog", "imc.concept.units", "imc.param.mcsvel")
 @pytest.mark.covers("imc.IMC_MoveVelocity")
 def test_velocity_is_kept_until_another_is_given(program: Program) -> None:
     program.ok(lib.IMC_MoveVelocity, 100 * 65536, 0, IF)
@@ -80,6 +90,7 @@ def test_velocity_is_kept_until_another_is_given(program: Program) -> None:
     assert program.get("curvel") == 0
 
 
+@pytest.mark.covers("imc.IMC_GearFree", "imc.param.pcsdist")
 @pytest.mark.covers("imc.IMC_Phasing", "imc.concept.superposition")
 @pytest.mark.parametrize(("source", "passed_on"), [(2, 0), (0, 100)])
 def test_phasing_shifts_a_master_against_slaves_that_follow_its_mcsvel(
@@ -182,6 +193,7 @@ def test_homing(name: str, arguments: tuple[int, ...], start: int, origin: int, 
     assert stopped == pytest.approx(end, abs=12 if abs(end) == 200 else 2)
 
 
+@pytest.mark.covers("imc.concept.gear_law", "imc.param.engear", "imc.param.gearoutmod", "imc.param.mcsaccel")
 @pytest.mark.covers("imc.IMC_GearFree")
 def test_free_gear_follows_with_the_ramp_of_the_slave(program: Program) -> None:
     program.ok(lib.IMC_MoveVelocity, 10 * 65536, 0, IF)
@@ -203,6 +215,7 @@ def test_free_gear_follows_with_the_ramp_of_the_slave(program: Program) -> None:
     assert (program.get("mcsvel", 0), program.get("mcsvel", 1)) == (0, -10 * 65536)  # gearoutmod 0
 
 
+@pytest.mark.covers("imc.concept.startsyn", "imc.param.startsyn")
 @pytest.mark.covers("imc.IMC_GearInDist", "imc.concept.gear_dist_law")
 def test_gear_over_a_distance_waits_for_startsyn(program: Program) -> None:
     program.ok(lib.IMC_GearInDist, 1.0, 0, 0, 0, 0, 1000, 1, IF)
@@ -222,6 +235,7 @@ def test_gear_over_a_distance_waits_for_startsyn(program: Program) -> None:
     assert program.get("curpos", 0) - program.get("curpos", 1) == pytest.approx(gap, abs=1)
 
 
+@pytest.mark.covers("imc.concept.startsyn", "imc.param.startsyn")
 @pytest.mark.covers("imc.IMC_GearInTime", "imc.concept.gear_time_law")
 def test_gear_over_a_time_waits_for_startsyn(program: Program) -> None:
     program.ok(lib.IMC_MoveVelocity, 10 * 65536, 0, IF)
@@ -234,6 +248,7 @@ def test_gear_over_a_time_waits_for_startsyn(program: Program) -> None:
     assert program.get("curpos", 1) == pytest.approx(2000, abs=40)
 
 
+@pytest.mark.covers("imc.param.gearoutmod", "imc.param.engear")
 @pytest.mark.covers("imc.IMC_HandWheel")
 def test_handwheel(program: Program) -> None:
     program.ok(lib.IMC_HandWheel, 10.0, 2, 1, IF)
@@ -249,6 +264,9 @@ def test_handwheel(program: Program) -> None:
     assert program.get("curpos", 1) == 40
 
 
+@pytest.mark.covers(
+    "imc.concept.sync_laws", "imc.concept.startsyn", "imc.param.startsyn", "imc.param.slaveabs"
+)
 @pytest.mark.covers("imc.IMC_MoveTP")
 def test_position_over_time(program: Program) -> None:
     program.ok(lib.IMC_MoveInTime, 1000, 5000, 1, IF)
@@ -268,6 +286,7 @@ def test_position_over_time(program: Program) -> None:
     assert program.get("curpos", 1) == 4300
 
 
+@pytest.mark.covers("imc.concept.sync_laws", "imc.param.enasyn", "imc.param.startsyn")
 @pytest.mark.covers("imc.IMC_MovePP", "imc.concept.startsyn")
 def test_position_over_the_way_of_another_axis(program: Program) -> None:
     program.ok(lib.IMC_MoveInDist, 2000, 0, 500, 1, IF)
@@ -288,6 +307,7 @@ def test_position_over_the_way_of_another_axis(program: Program) -> None:
     assert (program.get("curpos", 1), program.get("mcsvel", 1)) == (500, 0)
 
 
+@pytest.mark.covers("imc.concept.sync_laws", "imc.concept.startsyn")
 @pytest.mark.covers("imc.IMC_MoveTV")
 def test_velocity_over_time(program: Program) -> None:
     program.ok(lib.IMC_TgvelInTime, 500, 100 * 65536, 1, IF)
@@ -303,6 +323,7 @@ def test_velocity_over_time(program: Program) -> None:
     assert program.get("mcsvel", 1) == 100 * 65536
 
 
+@pytest.mark.covers("imc.concept.startsyn", "imc.param.enasyn")
 @pytest.mark.covers("imc.IMC_MovePV", "imc.concept.sync_laws")
 def test_velocity_over_the_way_of_another_axis(program: Program) -> None:
     program.ok(lib.IMC_MoveVelocity, 10 * 65536, 0, IF)
@@ -346,6 +367,7 @@ def test_two_cards_keep_in_step() -> None:
     lib.detach()
 
 
+@pytest.mark.covers("imc.param.encpfactor")
 @pytest.mark.parametrize(
     ("code", "cycles"),
     [

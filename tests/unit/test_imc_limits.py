@@ -20,6 +20,7 @@ from support.imc_card import (
 LIMITS = "[[axis]]\nlimit_positive = 1000.0\nlimit_negative = -1000.0\n[[axis]]\n"
 
 
+@pytest.mark.covers("imc.param.aiolat")
 @pytest.mark.covers(
     "imc.param.error", "imc.param.aioctr", "imc.param.stopfilt", "imc.param.aio", "imc.bit.aio.0"
 )
@@ -44,6 +45,7 @@ def test_a_limit_switch_stops_the_motion_towards_it_only(way: int, bit: int, lev
     assert (card.read("error"), card.read("aiolat")) == (0, 0)
 
 
+@pytest.mark.covers("imc.param.aioctr")
 @pytest.mark.parametrize("way", [1, -1])
 def test_at_a_limit_switch_every_command_leads_away_from_it_only(way: int) -> None:
     card = ready_card(LIMITS)
@@ -76,6 +78,7 @@ def test_at_a_limit_switch_every_command_leads_away_from_it_only(way: int) -> No
     assert card.read("curpos") == there - 29 * way
 
 
+@pytest.mark.covers("imc.param.aioctr")
 @pytest.mark.covers("imc.param.aiolat", "imc.param.clraiolat")
 def test_limits_work_by_their_polarity_and_only_when_they_are_used() -> None:
     low = 'low_when_on = ["limit_positive"]\n'
@@ -126,6 +129,7 @@ def test_an_error_that_no_mask_names_changes_nothing() -> None:
     assert (card.read("curpos"), card.read("error")) == (3000, 1)
 
 
+@pytest.mark.covers("imc.param.stopfilt")
 @pytest.mark.covers("imc.param.stopmode")
 @pytest.mark.parametrize(("soft", "way", "bit"), [(0, 1, 1), (0, -1, 2), (1, 1, 4), (1, -1, 8)])
 def test_stopmode_names_the_errors_that_stop_at_once_and_all_others_brake(
@@ -152,6 +156,12 @@ def test_exitfilt_names_the_errors_that_end_run() -> None:
     send(card, IFIFO, ("mcstgvel", 20))
     card.advance(100)
     assert (card.read("run"), card.read("moving"), card.read("curvel")) == (0, 0, 0)
+    other = ready_card(LIMITS)
+    set_now(other, ("aioctr", 0x000F), ("exitfilt", 0xFFFE))
+    send(other, IFIFO, ("mcstgvel", 20))
+    other.advance(100)
+    assert card.read("error") == other.read("error") == 1
+    assert other.read("run") == FLAG  # it is not an error that the mask names
 
 
 @pytest.mark.covers("imc.param.poserrlim")
@@ -165,6 +175,7 @@ def test_a_position_error_beyond_its_limit_is_an_error() -> None:
     assert 100 < card.read("poserr") < 300
 
 
+@pytest.mark.covers("imc.param.run")
 @pytest.mark.covers("imc.param.vellim", "imc.param.accellim")
 @pytest.mark.parametrize(("name", "value", "bit"), [("vellim", 30, 0x2000), ("accellim", 0.5, 0x4000)])
 def test_speed_and_acceleration_limits_end_run_whatever_the_masks_say(

@@ -142,6 +142,7 @@ def test_words_of_the_card_are_the_same_for_every_axis() -> None:
     assert [card.read("homepos", i) for i in range(4)] == [0, 9, 0, 0]
 
 
+@pytest.mark.covers("imc.param.fwversion", "imc.param.naxis")
 def test_read_only_words_refuse_to_be_written() -> None:
     card = ready_card(number_of_axes=3)
     for name in ("naxis", "curpos", "moving", "fwversion", "gin1"):
@@ -227,6 +228,7 @@ def test_an_unknown_place_is_refused_and_nothing_is_written() -> None:
         card.read("curposs")
 
 
+@pytest.mark.covers("imc.param.naxis")
 def test_a_card_file_gives_axes_queues_and_power_on_values() -> None:
     card = Card(
         parse_card(

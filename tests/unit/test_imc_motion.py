@@ -22,6 +22,7 @@ from support.imc_card import (
 )
 
 
+@pytest.mark.covers("imc.param.motion")
 @pytest.mark.covers(
     "imc.param.mcsgo", "imc.param.mcstgpos", "imc.param.mcsmoving", "imc.param.mcspos", "imc.concept.units"
 )
@@ -56,6 +57,28 @@ def test_a_long_move_has_its_speed_and_its_two_rates() -> None:
     assert sum(velocities) == 1000
 
 
+@pytest.mark.parametrize("system", ["mcs", "pcs"])
+@pytest.mark.covers(
+    *(f"imc.param.{system}{name}" for system in ("mcs", "pcs") for name in ("maxvel", "accel", "decel", "go", "dist")),
+    "imc.param.pcsvel", "imc.param.mcsvel",
+)  # fmt: skip
+def test_each_system_moves_backwards_with_its_own_speed_and_rates(system: str) -> None:
+    card = ready_card()
+    for name, value in (("maxvel", 10), ("accel", 0.5), ("decel", 0.25)):
+        other = "pcs" if system == "mcs" else "mcs"
+        set_now(card, (f"{system}{name}", value, 2), (f"{other}{name}", 3 * value, 2))
+    move_relative(card, -1000, 2, system=system)
+    velocities = trace(card, f"{system}vel", 95, 2)
+    assert card.read(f"{system}go", 2) == FLAG
+    assert velocities[19] == -9.75
+    assert set(velocities[20:80]) == {-10.0}
+    assert velocities[91] - velocities[90] == 0.25
+    set_now(card, ("run", 0, 2))  # stops at once, and what was commanded is over
+    card.advance(1)
+    assert [card.read(f"{system}{name}", 2) for name in ("go", "vel", "moving")] == [0, 0, 0]
+
+
+@pytest.mark.covers("imc.param.mcsslope")
 def test_slope_is_set_while_the_velocity_changes() -> None:
     card = ready_card()
     set_now(card, ("mcstgvel", 3))
@@ -86,6 +109,7 @@ def test_a_move_can_be_given_a_new_target_under_way() -> None:
     assert card.read("curpos") == -300
 
 
+@pytest.mark.covers("imc.param.mcsgo")
 def test_a_move_is_stopped_by_writing_0_to_go() -> None:
     card = ready_card()
     move_absolute(card, 5000)
@@ -220,7 +244,7 @@ def test_the_auxiliary_system_has_the_motions_of_the_main_one() -> None:
 
 
 @pytest.mark.covers("imc.param.smooth", "imc.param.smoothing", "imc.param.curvel", "imc.param.curpos")
-@pytest.mark.parametrize("span", [2, 16, 64])
+@pytest.mark.parametrize("span", [2, 17, 64])
 def test_smoothing_is_the_mean_of_the_last_increments_and_loses_nothing(span: int) -> None:
     plain, smooth = ready_card(), ready_card()
     set_now(smooth, ("smooth", span))
@@ -235,6 +259,7 @@ def test_smoothing_is_the_mean_of_the_last_increments_and_loses_nothing(span: in
     assert (smooth.read("curpos"), smooth.read("moving"), smooth.read("smoothing")) == (1234, 0, 0)
 
 
+@pytest.mark.covers("imc.param.smooth")
 @pytest.mark.covers("imc.param.profiling", "imc.param.smoothing", "imc.param.moving", "imc.param.mcsmoving")
 def test_moving_lasts_as_long_as_smoothing_does() -> None:
     card = ready_card()
@@ -325,6 +350,7 @@ def test_motion_ends_when_the_error_has_stayed_in_its_window(way: int, window: i
     assert sum(each["motion"] != 0 for each in seen) > moved + length
 
 
+@pytest.mark.covers("imc.param.settlen", "imc.param.motion", "imc.param.outtrack")
 @pytest.mark.covers("imc.param.profiling", "imc.param.moving")
 def test_motion_of_an_ideal_axis_lasts_settlen_cycles_longer() -> None:
     card = ready_card()
@@ -398,6 +424,7 @@ def test_a_ring_axis_counts_its_turns() -> None:
     assert card.kernel.servo.actual[0] == 2900
 
 
+@pytest.mark.covers("imc.param.cirpos", "imc.param.ciraxis")
 def test_a_two_way_ring_goes_below_zero() -> None:
     card = ready_card()
     set_now(card, ("cirpos", 1000), ("ciraxis", FLAG), ("biciraxis", FLAG))
@@ -421,6 +448,7 @@ def test_the_main_encoder_is_scaled_and_shows_its_speed() -> None:
         assert (card.read("encp"), card.read("encpvel")) == (140 + 25 * k // 2, 12.5)
 
 
+@pytest.mark.covers("imc.param.ena", "imc.param.encpctr")
 def test_feedback_can_follow_the_command() -> None:
     card = ready_card()
     set_now(card, ("encpctr", -0x8000), ("ena", 0))
@@ -442,6 +470,7 @@ def test_an_axis_that_has_just_been_told_to_move_shows_it_before_the_next_cycle(
     assert [card.read(word, 2) for word in shown] == [0] * 5
 
 
+@pytest.mark.covers("imc.param.encpfactor", "imc.param.sethome")
 def test_the_origin_is_set_in_the_scale_of_the_encoder() -> None:
     card = ready_card("number_of_axes = 3\n[[axis]]\n[[axis]]\n[[axis]]\ncounts_per_pulse = 4.0\n")
     move_absolute(card, 700, 2)

@@ -64,6 +64,7 @@ def test_a_segment_has_its_speed_and_the_acceleration_of_its_space(space: int) -
     assert card.clock.cycles == 250 + 40 + 1
 
 
+@pytest.mark.covers("imc.param.segtgvel1")
 def test_a_plain_segment_takes_the_speeds_in_force_and_needs_no_axis_count() -> None:
     card = ready_card()
     enable_path(card, 0, 1)
@@ -264,6 +265,7 @@ def test_a_move_behind_a_segment_in_the_same_queue_is_carried_out() -> None:
     assert (card.read("curpos"), card.read("segID1")) == (60, 2)
 
 
+@pytest.mark.covers("imc.param.hpause")
 def test_pause_of_all_axes_holds_a_path() -> None:
     card = ready_card()
     enable_path(card, 0)
@@ -288,6 +290,7 @@ def test_a_segment_of_no_length_is_passed() -> None:
     assert (card.read("curpos"), card.read("segID1")) == (100, 2)
 
 
+@pytest.mark.covers("imc.param.smooth")
 def test_smoothing_acts_behind_the_path() -> None:
     card = ready_card()
     set_now(card, ("smooth", 16))
@@ -374,6 +377,7 @@ def test_points_in_a_path_queue_are_gone_along_with_the_speed_of_the_space(space
     assert (card.waiting_words(queue), card.read(f"segID{space}")) == (0, 10)
 
 
+@pytest.mark.covers("imc.param.pathacc1", "imc.param.feedoverride")
 def test_points_slow_down_for_what_follows_and_take_the_override() -> None:
     card = ready_card()
     enable_path(card, 0)

@@ -202,6 +202,7 @@ def test_count_registers_show_the_words_that_wait_and_clear_when_written() -> No
     assert [card.waiting_words(queue) for queue in range(5)] == [0] * 5
 
 
+@pytest.mark.covers("imc.param.clrqfifo")
 def test_a_queue_can_clear_itself() -> None:
     card = ready_card()
     send(card, QFIFO, ("clrqfifo", FLAG), ("user16b0", 1))

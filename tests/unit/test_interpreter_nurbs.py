@@ -215,8 +215,8 @@ def test_the_executed_block_shows_the_curve() -> None:
     seen = {}
     while run.active:
         run.advance(1)
-        if run.executed is not None and run.modal is not None:
-            seen[run.executed.line] = run.modal.g.get(Group.MOTION)
+        if run.reading.block is not None and run.reading.modal is not None:
+            seen[run.reading.block.line] = run.reading.modal.g.get(Group.MOTION)
     assert {line: g for line, g in seen.items() if line in (1, 4, 5)} == {1: "G1", 4: "G5.2", 5: "G1"}
 
 

@@ -210,8 +210,8 @@ def test_the_executed_block_shows_its_spline_and_the_next_one_the_motion_before(
     seen = {}
     while run.active:
         run.advance(1)
-        if run.executed is not None and run.modal is not None:
-            seen[run.executed.line] = run.modal.g.get(Group.MOTION)
+        if run.reading.block is not None and run.reading.modal is not None:
+            seen[run.reading.block.line] = run.reading.modal.g.get(Group.MOTION)
     assert seen == {1: "G1", 2: "G5", 3: "G5.1", 4: "G1", 5: "G1"}
 
 
@@ -226,7 +226,7 @@ def test_a_held_and_overridden_spline_ends_in_the_same_place() -> None:
         run.advance(cycles)
         run.hold()
         run.advance(200)
-        run.feed_override = override
+        run.overrides.feed = override
         run.resume()
     to_the_end(run)
     assert run.machine.setpoints == undisturbed.machine.setpoints

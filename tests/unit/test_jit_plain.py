@@ -15,7 +15,7 @@ import pytest
 from numba.core.registry import CPUDispatcher
 
 import polycnc
-from polycnc.cli._warmup import warmup_command
+from polycnc.cli._warmup import _JOBS, warmup_command
 from polycnc.jit._compile import entries
 from polycnc.jit._plain import ALLOWANCE, ALLOWED_STEPS, Allowance, PlainFunctions
 from support.command import environment
@@ -180,3 +180,11 @@ def test_warming_up_leaves_nothing_to_the_interpreter(monkeypatch: pytest.Monkey
     monkeypatch.setattr("polycnc.cli._warmup._JOBS", {"run": lambda _: left.append(ALLOWANCE.left)})
     warmup_command("run")
     assert left == [0]
+
+
+@pytest.mark.skipif(bool(os.environ.get("NUMBA_DISABLE_JIT")), reason="nothing is compiled")
+def test_warming_up_makes_every_entry_of_stock_ready() -> None:
+    _JOBS["stock"](lambda name, part: None)
+    of_stock = {name: each for name, each in entries() if name.startswith("polycnc.stock.")}
+    assert len(of_stock) >= 3
+    assert [name for name, each in of_stock.items() if not each.signatures] == []

@@ -82,6 +82,6 @@ def test_the_executed_block_tells_which_of_them_is_in_force(tmp_path: Path) -> N
     run.start()
     while run.active:
         run.advance(1)
-        if run.executed is not None and run.modal is not None:
-            seen[run.executed.line] = run.modal.g.get(Group.STOPPING)
+        if run.reading.block is not None and run.reading.modal is not None:
+            seen[run.reading.block.line] = run.reading.modal.g.get(Group.STOPPING)
     assert seen == {1: "G61", 2: "G61", 3: "G64", 4: "G61.1", 5: "G61.1"}

@@ -13,6 +13,7 @@ from polycnc.machine._config import IoConfig, MachineConfig
 from polycnc.machine._config_axis import LinearAxis, LinearServo, RotaryAxis, RotaryServo
 from polycnc.machine._toml import StrictModel, load_toml, parse_toml, validate
 from polycnc.machine._toml_locator import KeyPath
+from support.often import share
 
 AXIS_X = 'name = "m"\n[[axis]]\nname = "X"\nvmax_mm_s = 500\namax_mm_s2 = 5000\n'  # lines 1 to 5
 AXIS_A = (
@@ -536,7 +537,7 @@ def written(
             written(value, f"{path}{key}.", (*at, key), lines, places)
 
 
-@settings(deadline=None, max_examples=100)
+@settings(deadline=None, max_examples=share(100))
 @given(tables)
 def test_the_locator_finds_every_key_of_any_file(table: dict[str, Any]) -> None:
     lines: list[str] = []

@@ -66,7 +66,7 @@ def test_a_skipped_move_calls_nothing_and_one_of_another_level_does() -> None:
     run.advance(100_000)
     assert run.state is RunState.COMPLETED, run.error
     assert values(language, 101) == [10.0]  # X1, X3, Y4, Z6
-    assert run.position == {"X": 3.0, "Y": 4.0, "Z": 6.0}
+    assert run.reading.position == {"X": 3.0, "Y": 4.0, "Z": 6.0}
 
 
 def test_five_modal_calls_are_too_many() -> None:
@@ -105,9 +105,9 @@ INTERRUPTED = (
 
 def test_an_interrupt_calls_its_program_behind_the_block() -> None:
     run, language = made(INTERRUPTED)
-    run.advance(1_000_000, until=lambda: run.position["X"] > 1.4)
+    run.advance(1_000_000, until=lambda: run.reading.position["X"] > 1.4)
     language.interrupt()
-    run.advance(1_000_000, until=lambda: run.position["X"] > 4.4)
+    run.advance(1_000_000, until=lambda: run.reading.position["X"] > 4.4)
     language.interrupt()  # M97: nobody listens
     run.advance(1_000_000)
     assert run.state is RunState.COMPLETED, run.error
@@ -119,9 +119,9 @@ def test_an_interrupt_program_is_called_by_no_move_and_hears_no_signal() -> None
         "#1=9001\nG66 P9002 A2.5\nM96 P#1\nG1 X1 F600\nX2\nG67\nX3\nM97\nM30\n"
         "O9001\n#101=#101+1\nG1 Y1.5\nY3\n#2=#5042\nM99\nO9002\n#102=#102+#1\nM99\n"
     )
-    run.advance(1_000_000, until=lambda: run.position["X"] > 0.5)
+    run.advance(1_000_000, until=lambda: run.reading.position["X"] > 0.5)
     language.interrupt()
-    run.advance(1_000_000, until=lambda: run.position["Y"] > 0.5)
+    run.advance(1_000_000, until=lambda: run.reading.position["Y"] > 0.5)
     language.interrupt()
     run.advance(1_000_000)
     assert run.state is RunState.COMPLETED, run.error
@@ -130,12 +130,12 @@ def test_an_interrupt_program_is_called_by_no_move_and_hears_no_signal() -> None
 
 def test_an_interrupt_program_may_return_to_another_block() -> None:
     run, language = made("M96 P9001\nG1 X1 F600\nX2\nX3\n#105=1\nN80 #106=2\nM97\nM30\nO9001\nM99 P80\n")
-    run.advance(1_000_000, until=lambda: run.position["X"] > 0.5)
+    run.advance(1_000_000, until=lambda: run.reading.position["X"] > 0.5)
     language.interrupt()
     run.advance(1_000_000)
     assert run.state is RunState.COMPLETED, run.error
     assert values(language, 105, 106) == [None, 2.0]
-    assert run.position["X"] == 1.0
+    assert run.reading.position["X"] == 1.0
 
 
 def test_the_signal_of_the_pmc_interrupts() -> None:
@@ -322,10 +322,10 @@ def test_a_hold_that_never_came_is_forgotten_with_its_program() -> None:
 def test_the_feed_override_is_suppressed_and_acts_again() -> None:
     def took(text: str, override: float) -> int:
         run, _ = made(text)
-        run.feed_override = override
+        run.overrides.feed = override
         run.advance(1_000_000)
         assert run.state is RunState.COMPLETED
-        assert run.feed_override == override
+        assert run.overrides.feed == override
         return run.machine.clock.cycles
 
     moves = "G1 X5 F600\n{}\nX10\n{}\nX15\nM30\n"

@@ -66,11 +66,11 @@ def ran(
         found.extend((one.time_s, one.event.line, one.event.word, one.moved) for one in several)
 
     def met(event: Event) -> None:
-        found.append((run.machine.time_s, event.line, event.word, run.path_times))
+        found.append((run.machine.time_s, event.line, event.word, run.reading.path_times))
 
     with pytest.MonkeyPatch.context() as patch:
         options = partial(ChannelOptions, ordinary_blocks=0 if compiled else math.inf)
-        patch.setattr("polycnc.cnc._program_run.ChannelOptions", options)
+        patch.setattr("polycnc.cnc._run_channels.ChannelOptions", options)
         run = ProgramRun(
             Machine(config),
             ProgramText.from_text(program, "part.nc"),
@@ -85,9 +85,9 @@ def ran(
             run.skip()
         else:
             run.advance(37)
-    last = run.executed
+    last = run.reading.block
     said = None if last is None else (last.line, last.modal)
-    return (run.machine.time_s, run.tool_times, run.machine.setpoints, said, str(run.error)), found
+    return (run.machine.time_s, run.reading.tool_times, run.machine.setpoints, said, str(run.error)), found
 
 
 @settings(max_examples=25, suppress_health_check=[HealthCheck.too_slow])

@@ -204,7 +204,8 @@ def test_the_picture_shows_the_cuts_and_a_margin() -> None:
     assert plan.get_xlim() == pytest.approx((10.0 - 6.0 - room, 50.0 + 6.0 + room))
     assert plan.get_ylim() == pytest.approx((10.0 - 6.0 - room, 20.0 + 6.0 + room))
     assert solid.get_xlim() == pytest.approx(plan.get_xlim())
-    assert solid.get_zlim() == pytest.approx((-1.0 - room, 5.0 + room))
+    limits: Any = solid
+    assert limits.get_zlim() == pytest.approx((-1.0 - room, 5.0 + room))
     sides = solid.get_box_aspect if hasattr(solid, "get_box_aspect") else None
     assert sides is not None
     shares = solid._box_aspect / np.max(solid._box_aspect)
@@ -347,3 +348,17 @@ def test_of_more_than_twenty_tools_the_rest_is_counted() -> None:
     assert _legend(_figure(program + "M30\n"))[19:21] == ["T20", "and 1 more tool"]
     twenty = "".join(f"T{tool} M6\nG1 X{3 * tool} F9000\n" for tool in range(1, 21))
     assert _legend(_figure(twenty + "M30\n"))[19:] == ["T20", "start", "end"]
+
+
+def test_a_picture_with_stock_shows_the_solid() -> None:
+    """Its surface reaches as high and as low as the body, in machine coordinates."""
+    program = "(T1 D=6. CR=0. - flat end mill)\nT1 M6\nS900 M3\nG0 X3 Y4 Z9\nG1 Z-3 F600\nX41 Y19\nM30\n"
+    result = polycnc.run(program, "mill3", trace=True, stock="box=-4,-5,-7,50,30,0", resolution_mm=1.0)
+    figure = result.plot()
+    (solid,) = (axes for axes in figure.axes if axes.name == "3d")
+    assert solid.get_title(loc="left") == "What is left of the stock"
+    assert solid.get_xlim() == pytest.approx((-4.0, 50.0), abs=1.1)
+    limits: Any = solid
+    assert limits.get_zlim() == pytest.approx((-7.0, 0.0), abs=0.2)
+    assert len(solid.collections) == 1
+    assert not solid.lines

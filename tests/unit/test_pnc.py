@@ -262,6 +262,7 @@ def test_parameters_have_gaps_where_there_is_no_axis(example: Example) -> None:
 # ---------------------------------------------------------------------- channels ask each other
 
 
+@pytest.mark.covers("cpl.MCOPS.4", "cpl.MCOPS.6", "cpl.MCODS.32")
 def test_a_channel_selects_starts_and_watches_another(example: Example) -> None:
     example.write("other.npg", "N10 G1 X2=20 F6000\nN20 M30")
     found = example.run(
@@ -276,6 +277,7 @@ def test_a_channel_selects_starts_and_watches_another(example: Example) -> None:
     ]  # fmt: skip
 
 
+@pytest.mark.covers("cpl.MCOPS.7", "cpl.MCOPS.5", "cpl.MCOPS.2", "cpl.MCOPS.4")
 def test_a_channel_is_reset_and_changes_its_mode_on_demand(example: Example) -> None:
     example.start("N1 G1 X2=400 F600", channel=2)
     example.pnc.advance(100)
@@ -287,6 +289,7 @@ def test_a_channel_is_reset_and_changes_its_mode_on_demand(example: Example) -> 
     assert found["#G"] == pytest.approx(3)
 
 
+@pytest.mark.covers("cpl.MCOPS.1", "cpl.MCOPS.2", "cpl.MCOPS.7")
 def test_the_rest_of_a_way_is_not_cancelled_by_another_channel(example: Example) -> None:
     example.start("N1 G1 X2=9 F600", channel=2)
     ask = "{0}0 #{1}%=MCOPS(1,{2})\n"
@@ -445,6 +448,7 @@ def test_snapshots_are_taken_between_cpl_programs_and_in_them(example: Example) 
 # ---------------------------------------------------------------------- what another channel sees
 
 
+@pytest.mark.covers("cpl.MCODS.3", "cpl.MCODS.87")
 @pytest.mark.covers("cpl.nc.G95", "cpl.nc.M0_M1")
 def test_feeds_per_revolution_and_program_stops_are_seen(example: Example) -> None:
     example.start("N1 G95 F0.5 S1300 M3\nN2 G1 X4\nN3 M0\nN4 G1 X5")
@@ -467,7 +471,9 @@ def test_feeds_per_revolution_and_program_stops_are_seen(example: Example) -> No
 
 
 @pytest.mark.covers("cpl.SCS")
-@pytest.mark.covers("cpl.err.SERCOS_LOCKED", "cpl.SCS.result.1", "cpl.SCSL.result.1", "cpl.err.SCS_ACCESS")
+@pytest.mark.covers(
+    "cpl.err.SERCOS_LOCKED", "cpl.SCS.result.1", "cpl.SCSL.result.1", "cpl.err.SCS_ACCESS", "cpl.SCSL"
+)
 def test_a_locked_service_channel_leaves_the_old_value(example: Example) -> None:
     drives = example.pnc.system.drives
     example.run("N1 G0 X3.5")
@@ -516,6 +522,7 @@ def test_a_host_lends_it_time(example: Example) -> None:
 ASKS = "10 DIM B%(2) : V=0\n20 E%=MCODS(32,1,V,B%,2) : #S%=B%(1)\n"
 
 
+@pytest.mark.covers("cpl.MCODS.32")
 @pytest.mark.covers("cpl.MCODS")
 def test_what_changes_and_changes_back_between_two_questions_is_new(example: Example) -> None:
     """Channel 1 is inactive, runs a short program, and is inactive again while channel 2 dwells."""
@@ -528,6 +535,7 @@ def test_what_changes_and_changes_back_between_two_questions_is_new(example: Exa
     assert [found[name] for name in ("#S%", "#T%", "#E%")] == [1, 1, 0]
 
 
+@pytest.mark.covers("cpl.MCOPS.4", "cpl.MCODS.32")
 @pytest.mark.covers("cpl.MCODS", "cpl.MCOPS")
 def test_another_control_is_asked_and_serves_without_further_calls(example: Example, tmp_path: Path) -> None:
     root = tmp_path / "second"
@@ -616,6 +624,7 @@ def test_searches_that_come_to_nothing_leave_the_program_at_its_beginning(exampl
     assert example.run("N1 G0 X2\n2 WAIT\n3 #A=MPOS(1)")["#A"] == 2
 
 
+@pytest.mark.covers("cpl.MCOPS.4", "cpl.MCOPS.6")
 @pytest.mark.covers("cpl.MCOPS.3")
 def test_a_program_has_another_channel_search_a_block(example: Example) -> None:
     example.write("other.npg", "1 A=4\nN10 G91 G1 X2=[A] F6000\nN20 X2=[A]\nN30 Y2=[A]")
@@ -633,7 +642,7 @@ SENSES = " : ".join(
 )
 
 
-@pytest.mark.covers("cpl.SD.12.val.19", "cpl.SD.12.1", "cpl.SD.12.2", "cpl.MCODS.63.val.6")
+@pytest.mark.covers("cpl.SD.12.val.19", "cpl.SD.12.1", "cpl.SD.12.2", "cpl.MCODS.63.val.6", "cpl.MCODS.63")
 def test_an_oriented_spindle_is_told(tmp_path: Path) -> None:
     machine = tmp_path / "spindle.toml"
     machine.write_text(

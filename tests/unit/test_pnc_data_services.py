@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 
 import pytest
 
-from polycnc.cnc import Answer, Function
+from polycnc.cnc import Answer, Function, RunState
 from polycnc.controllers.bosch import Pnc
 from polycnc.controllers.bosch.ncs import OVERVIEW, Coupling, Mode
 from polycnc.nc.cpl import BLOCKED, Box, Field
@@ -99,6 +99,23 @@ def test_setpoints_actual_values_and_lag_are_told_apart(lagging: Living) -> None
     assert close(lagging.read(75, 1, 3), [x.actual - 5.5, z.actual + 0.5, 0])
 
 
+@pytest.mark.covers(
+    "cpl.cs.WCS", "cpl.cs.BCS", "cpl.cs.ACS", "cpl.cs.MCS", "cpl.MCODS.71", "cpl.MCODS.72", "cpl.MCODS.73"
+)
+@pytest.mark.covers("cpl.MCODS.74", "cpl.SPOS", "cpl.WPOS", "cpl.MPOS", "cpl.MCODS.37")
+def test_each_system_of_coordinates_has_its_shifts(lagging: Living) -> None:
+    """The shifts of axes lie between machine and axis coordinates, the length before the workpiece's."""
+    x, z = lagging.pnc.axes["X"].setpoint, lagging.pnc.axes["Z"].setpoint
+    wanted = {71: (x - 5.5, z + 0.5 - 42.5), 72: (x - 5.5, z + 0.5), 73: (x - 5.5, z + 0.5), 74: (x, z)}
+    assert {number: tuple(lagging.read(number, 1, 2)) for number in wanted} == {
+        number: pytest.approx(values, abs=1e-3) for number, values in wanted.items()
+    }
+    functions = lagging.pnc.system.functions(1)
+    assert (functions["WPOS"]("X"), functions["WPOS"](2)) == pytest.approx(wanted[71])
+    assert (functions["MPOS"](1), functions["MPOS"]("Z")) == pytest.approx(wanted[74])
+    assert (functions["SPOS"](1), functions["SPOS"]("Z")) == pytest.approx(wanted[74])
+
+
 @cases(
     Case(16, 0, [305.5, 117.0, 0, 0, 0], ("refresh",)),
     Case(23, 0, [300.0, 117.5, 0, 0, 0]),
@@ -164,6 +181,68 @@ def test_the_control_answers_whatever_the_overview_lists(lagging: Living) -> Non
             assert answer == 102 if number in (34, 42) else isinstance(answer, list | str), number
 
 
+# ---------------------------------------------------------------------- axes that lag, on their way back
+
+
+@pytest.fixture(scope="module")
+def back(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Living]:
+    """Return a control whose axes lag on their way back, with other tables, a length from outside and G92 in force."""
+    made = six(tmp_path_factory.mktemp("back"), LAGGING, servo=True)
+    made.start(
+        '1 TC(1,9,5)=31.25 : TC(1,745,0)=2.5 : FXC("X",55,2)=4\nN1 G22 K5\nN2 G22 V2\nN3 G745\nN4 H9\nN5 G55\n'
+        "N6 G92 X7.25\nN7 G1 X-180.123 Z-60 F60000\nN8 G4 F2\n",
+        70,
+    )
+    yield made
+    made.pnc.close()
+
+
+@pytest.mark.covers(
+    "cpl.MCODS.1", "cpl.MCODS.2", "cpl.MCODS.4", "cpl.MCODS.6", "cpl.MCODS.6.val.0", "cpl.MCODS.6.val.1"
+)
+@pytest.mark.covers("cpl.MCODS.79", "cpl.MCODS.35", "cpl.MCODS.47")
+def test_positions_of_axes_that_lag_behind_on_their_way_back(back: Living) -> None:
+    x, z = back.pnc.axes["X"], back.pnc.axes["Z"]
+    assert (x.setpoint < x.actual - 1, z.setpoint < z.actual - 0.4) == (True, True)
+    shown = back.read(1, -1, 2)
+    preset = shown[0] - x.setpoint
+    assert abs(preset) > 3  # where X showed 0 less the shift, it shows 7.25 since
+    assert shown[1] == pytest.approx(z.setpoint)
+    assert back.read(2, -1, 2) == [round((x.setpoint + preset) * 1e4), round(z.setpoint * 1e4)]
+    assert close(back.read(4, -1, 2), [x.setpoint - x.actual, z.setpoint - z.actual])
+    assert close(back.read(35, -1, 2), [x.actual, z.actual])
+    assert [back.read(number, channel, 3) for number, channel in ((6, -1), (79, 1), (47, 1))] == [
+        [0, 0, 1], [0, 0, 1], [1, 1, 0],
+    ]  # fmt: skip
+
+
+@cases(
+    Case(9, 1, [9]),
+    Case(10, 1, [33.75]),
+    Case(13, 1, "K5"),
+    Case(14, 1, "V2"),
+    Case(51, 1, [0, 2.5]),
+    Case(9, 2, [-1], ("9.val.-1",)),
+    Case(15, 1, [4, 0, 0, 0, 0, 0, 0, 0, 0]),
+)
+def test_tables_and_lengths_are_those_that_were_selected(back: Living, case: Case) -> None:
+    assert close(case.read(back), case.expected)
+
+
+@pytest.mark.covers("cpl.MCODS.6", "cpl.MCODS.6.val.1", "cpl.MCODS.79", "cpl.MCODS.9.val.-1", "cpl.MCODS.9")
+def test_an_axis_is_in_position_within_its_window(tmp_path: Path) -> None:
+    living = six(tmp_path, LAGGING, servo=True)
+    living.start("N1 G1 X2 F6000\nN2 G4 F3\nN3 H3\nN4 G4 F1", 20)
+    x = "X"
+    assert (living.glance(6, -1, 1), living.glance(79, 1, 1), living.glance(9, 1)) == ([0], [0], [-1])
+    living.pnc.advance(
+        2000, until=lambda: abs(living.pnc.axes[x].setpoint - living.pnc.axes[x].actual) < 0.009
+    )
+    assert abs(living.pnc.axes[x].setpoint - living.pnc.axes[x].actual) > 0.001
+    assert (living.glance(6, -1, 1), living.glance(79, 1, 1)) == ([1], [1])
+    living.pnc.close()
+
+
 # ---------------------------------------------------------------------- compensations and shifts of a long channel
 
 
@@ -192,6 +271,7 @@ def test_external_and_general_compensations_in_force(nine: Living, case: Case) -
     assert close(case.read(nine), case.expected)
 
 
+@pytest.mark.covers("cpl.MCODS.54")
 @pytest.mark.parametrize(
     "kind", [pytest.param(each, marks=pytest.mark.covers(f"cpl.MCODS.54.type.{each}")) for each in range(5)]
 )
@@ -219,7 +299,13 @@ def test_data_of_blocks_are_new_with_the_next_block(nine: Living) -> None:
 
 
 @pytest.mark.covers(
-    "cpl.MCODS.40", "cpl.MCODS.40.val.0", "cpl.MCODS.40.val.1", "cpl.MCODS.87.bit.1", "cpl.MCODS.refresh.E"
+    "cpl.MCODS.40",
+    "cpl.MCODS.40.val.0",
+    "cpl.MCODS.40.val.1",
+    "cpl.MCODS.87.bit.1",
+    "cpl.MCODS.refresh.E",
+    "cpl.MCODS.87",
+    "cpl.MCODS.refresh",
 )
 def test_an_auxiliary_function_waits_until_the_plc_acknowledges_it(tmp_path: Path) -> None:
     living = six(tmp_path, script={(Function.M, 27): Answer(after_s=0.06)})
@@ -260,6 +346,7 @@ def test_a_spindle_turns_with_or_without_coolant(tmp_path: Path, words: str, val
     living.pnc.close()
 
 
+@pytest.mark.covers("cpl.MCOPS.6")
 @pytest.mark.covers("cpl.ncs.5", "cpl.MCODS.26", "cpl.MCODS.26.val.0", "cpl.MCODS.26.val.1", "cpl.MCODS.80")
 def test_axes_are_referenced_before_a_program_starts(tmp_path: Path) -> None:
     machine = 'name = "three"\n' + "".join(AXIS.format(name, 400) for name in "XYZ")
@@ -284,8 +371,15 @@ def test_axes_are_referenced_before_a_program_starts(tmp_path: Path) -> None:
     pnc.close()
 
 
+@pytest.mark.covers("cpl.MCODS.33")
 @pytest.mark.covers(
-    "cpl.MCODS.18.val.2", "cpl.MCODS.18.val.3", "cpl.MCODS.58.val.-1", "cpl.MCODS.58", "cpl.MCODS.43.val.-1"
+    "cpl.MCODS.18.val.2",
+    "cpl.MCODS.18.val.3",
+    "cpl.MCODS.58.val.-1",
+    "cpl.MCODS.58",
+    "cpl.MCODS.43.val.-1",
+    "cpl.MCODS.18",
+    "cpl.MCODS.43",
 )
 def test_channels_of_rotary_axes_of_none_and_axes_of_no_channel(tmp_path: Path) -> None:
     axes = AXIS.format("X", 400), ROTARY.format("C"), AXIS.format("U", 300), AXIS.format("Y", 90)
@@ -305,6 +399,7 @@ def test_channels_of_rotary_axes_of_none_and_axes_of_no_channel(tmp_path: Path) 
     living.pnc.close()
 
 
+@pytest.mark.covers("cpl.MCOPS.6", "cpl.MCODS.7")
 @pytest.mark.covers("cpl.ncs.100", "cpl.ncs.101", "cpl.ncs.return")
 def test_a_program_is_told_that_the_coupling_is_broken_or_strange(tmp_path: Path) -> None:
     living = six(tmp_path)
@@ -327,3 +422,26 @@ def test_an_axis_in_no_channel_is_asynchronous_from_the_start(tmp_path: Path) ->
     pnc = Pnc(tmp_path, tmp_path / "two.toml", channels=[("X",)])
     assert pnc.status().channel.axes == ("X",)
     pnc.close()
+
+
+def test_only_what_is_asked_for_is_read(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A program that waits for data of a channel has no axis read, whatever else the control shows."""
+    (tmp_path / "main.npg").write_text("10 DIM B%(4)\n20 V%=0\n30 R%=MCODS(31,1,V%,B%,1)\n40 GOTO 30\nM30\n")
+    made = Pnc(tmp_path)
+    made.select_program("main.npg")
+    made.cycle_start()
+    made.advance(3)
+    read: list[int] = []
+    shown = made.system.shown
+    axis = shown.image.axes._read  # type: ignore[attr-defined]
+
+    def noted(number: int) -> Any:
+        read.append(number)
+        return axis(number)
+
+    monkeypatch.setattr(shown.image.axes, "_read", noted)
+    assert made.advance(7) == 7
+    assert made.run_state(1) is RunState.ACTIVE
+    assert read == []
+    assert shown.renew().axes[2].number == 2
+    assert read == [2]

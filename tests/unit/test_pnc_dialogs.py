@@ -204,7 +204,7 @@ def test_a_drive_that_lags_is_in_the_list_with_its_time(panel: Panel) -> None:
     assert panel.pnc.information(Tab.WARNINGS) == panel.pnc.information(Tab.MESSAGES) == []
 
 
-@pytest.mark.covers("cpl.GETERR.cat.7", "cpl.info.tabs")
+@pytest.mark.covers("cpl.GETERR.cat.7", "cpl.info.tabs", "cpl.GETERR")
 def test_warnings_of_a_program_are_kept_until_a_reset(panel: Panel) -> None:
     found = panel.run(f'1 #R%=ERASE("NONE") : PRN#(0,"##",12345)\n{READ}')
     assert (found["#R%"], found["#W%"], found["#X%"], found["#Y%"], found["#P%"]) == (1, 2, 1, 7, 0)
@@ -223,6 +223,7 @@ def test_warnings_of_a_program_are_kept_until_a_reset(panel: Panel) -> None:
 # ---------------------------------------------------------------------- signals
 
 
+@pytest.mark.covers("cpl.MCOPS.2")
 @pytest.mark.covers("cpl.sig.IF_0.2")
 def test_a_reset_is_signalled_until_the_channel_has_a_new_job(panel: Panel) -> None:
     assert panel.run("1 #A?=IC(2,3,2)")["#A?"] is False
@@ -232,6 +233,7 @@ def test_a_reset_is_signalled_until_the_channel_has_a_new_job(panel: Panel) -> N
     assert panel.run("1 #A?=IC(2,3,2)")["#A?"] is False
 
 
+@pytest.mark.covers("cpl.MCOPS.7")
 @pytest.mark.covers("cpl.sig.NC-I_3.0")
 def test_the_mode_is_fixed_while_the_plc_sets_it(panel: Panel) -> None:
     bit = Signals.CHANNEL_INPUTS, 2, 24
@@ -259,6 +261,7 @@ def test_a_channel_is_ready_when_a_start_would_begin_or_go_on(panel: Panel) -> N
     assert not panel.pnc.is_ready(1)
 
 
+@pytest.mark.covers("cpl.MCODS.5")
 @pytest.mark.covers("cpl.nc.G196")
 def test_the_cutting_velocity_is_told_while_g196_holds(panel: Panel) -> None:
     found = panel.run(

@@ -42,6 +42,7 @@ def run(living: Living, program: str, cycles: int = 3000, channel: int = 1) -> d
 # ---------------------------------------------------------------------- MCODS
 
 
+@pytest.mark.covers("cpl.MCODS.32", "cpl.MCODS.39")
 @pytest.mark.covers("cpl.ex.3234", "cpl.ncs.return", "cpl.MCODS.constants", "cpl.MCODS.buffertype")
 def test_states_of_another_channel_are_read_at_once(two: Living) -> None:
     two.start("N1 G1 U300 F600\n", 40, channel=2)
@@ -81,6 +82,7 @@ def test_a_variable_that_does_not_fit_stops_the_program(two: Living, line: str, 
     assert two.pnc.variables().get("#A%") is None
 
 
+@pytest.mark.covers("cpl.MCODS.32")
 @pytest.mark.covers("cpl.ex.3251")
 def test_a_loop_ends_when_the_other_channel_is_inactive(two: Living) -> None:
     two.start("N1 G1 U3 F6000\nN2 M0\nN3 U5\n", 3, channel=2)
@@ -98,6 +100,7 @@ def test_a_loop_ends_when_the_other_channel_is_inactive(two: Living) -> None:
     assert two.pnc.variables()["#N%"] == 20301  # ready at M0, active, inactive
 
 
+@pytest.mark.covers("cpl.MCODS.33", "cpl.MCODS.45")
 @pytest.mark.covers("cpl.ex.3257")
 def test_names_of_the_axes_are_listed(two: Living) -> None:
     two.start(
@@ -155,6 +158,7 @@ def test_axes_of_the_own_channel_go_to_0_and_to_its_number(two: Living) -> None:
 # ---------------------------------------------------------------------- MCOPS
 
 
+@pytest.mark.covers("cpl.MCOPS.4", "cpl.MCOPS.3", "cpl.MCOPS.6")
 @pytest.mark.covers("cpl.ex.3200", "cpl.ex.3175", "cpl.ex.3201", "cpl.MCODS.constants")
 def test_programs_are_selected_searched_and_started(two: Living) -> None:
     found = run(two, '10 #A%=MCOPS(4,2,"sect.cnc","N50","N100",1)\n20 N%=6 : C%=2 : #B%=MCOPS(N%,C%)\n')
@@ -169,6 +173,7 @@ def test_programs_are_selected_searched_and_started(two: Living) -> None:
     assert (found["#A%"], found["#B%"], two.pnc.axes["U"].setpoint) == (0, 0, 7)
 
 
+@pytest.mark.covers("cpl.MCOPS.4", "cpl.MCOPS.6", "cpl.MCOPS.5", "cpl.MCOPS.2")
 @pytest.mark.covers(
     "cpl.ex.3202", "cpl.ex.3228", "cpl.ex.3209", "cpl.ex.3165", "cpl.MCOPS.7", "cpl.MCOPS.7.mode.4"
 )
@@ -192,6 +197,7 @@ SELECTED = [1, 2, 4, 5, 6, 7, 10, 12, 13]
 ONE_BLOCK = (6, 7, 10, 12)
 
 
+@pytest.mark.covers("cpl.MCODS.31")
 @pytest.mark.covers("cpl.MCOPS.7")
 @pytest.mark.parametrize(
     "mode", [pytest.param(mode, marks=pytest.mark.covers(f"cpl.MCOPS.7.mode.{mode}")) for mode in SELECTED]
@@ -216,7 +222,7 @@ WHERE = {1: "start", 3: "break"}
 
 
 @pytest.mark.covers("cpl.MCOPS")
-@pytest.mark.covers("cpl.MCOPS.8", "cpl.MCODS.46.rec.off")
+@pytest.mark.covers("cpl.MCOPS.8", "cpl.MCODS.46.rec.off", "cpl.MCODS.46")
 @pytest.mark.parametrize(
     ("how", "where"),
     [
@@ -293,7 +299,7 @@ def test_a_program_waits_until_its_client_answers_and_goes_on_with_its_values(tw
     assert two.pnc.axes["X"].setpoint == 2.75
 
 
-@pytest.mark.covers("cpl.MMC.ret.2")
+@pytest.mark.covers("cpl.MMC.ret.2", "cpl.MMC")
 def test_an_error_in_the_client_changes_nothing(two: Living) -> None:
     def client(variables: Sequence[Sent]) -> bool:
         variables[1].value = 2

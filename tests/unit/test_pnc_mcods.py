@@ -124,6 +124,7 @@ def test_data_of_a_control_in_motion(middle: Living, case: Case) -> None:
     assert found == (expected if isinstance(expected, str) else pytest.approx(expected, abs=1e-4))
 
 
+@pytest.mark.covers("cpl.MCODS.3")
 @pytest.mark.covers("cpl.MCODS.47", "cpl.MCODS.47.val.0", "cpl.MCODS.47.val.1")
 def test_an_axis_travels_whichever_way_it_goes(fresh: Living) -> None:
     fresh.start("N1 G1 F6000 X-60 C-30\nM30\n", 300)
@@ -134,6 +135,7 @@ def test_an_axis_travels_whichever_way_it_goes(fresh: Living) -> None:
     assert fresh.read(47, 1, 3) == [0, 0, 0]
 
 
+@pytest.mark.covers("cpl.MCODS.77", "cpl.MCODS.16", "cpl.MCODS.23")
 @pytest.mark.covers(
     "cpl.MCODS.2", "cpl.MCODS.62", "cpl.MCODS.62.val.-2147483648", "cpl.MCODS.83", "cpl.MCODS.76"
 )
@@ -152,6 +154,7 @@ def test_whole_numbers_ends_and_what_is_left(middle: Living) -> None:
     assert ends == ([pytest.approx(105.5)], [pytest.approx(105.5)], [pytest.approx(100)])
 
 
+@pytest.mark.covers("cpl.MCODS.31", "cpl.MCODS.55", "cpl.MCODS.56")
 @pytest.mark.covers("cpl.MCODS.34", "cpl.MCODS.42", "cpl.ncs.102", "cpl.ncs.1", "cpl.ncs.24", "cpl.ncs.18")
 def test_what_the_control_does_not_have_is_refused(middle: Living) -> None:
     assert [
@@ -173,7 +176,7 @@ def test_what_the_control_does_not_have_is_refused(middle: Living) -> None:
 
 
 @pytest.mark.parametrize(("number", "extra"), [(number, ()) for number in (1, 3, 35, 37, 47, 71, 74, 83)])
-@pytest.mark.covers("cpl.MCODS", "cpl.MCODS.refresh.Z")
+@pytest.mark.covers("cpl.MCODS", "cpl.MCODS.refresh.Z", "cpl.MCODS.refresh")
 def test_cyclic_data_are_new_in_the_next_cycle(fresh: Living, number: int, extra: tuple[int, ...]) -> None:
     fresh.start(PROGRAM)
     channel = -1 if DATA_SERVICES[number].scope == "system" else 1
@@ -250,3 +253,91 @@ def test_a_change_is_seen_by_who_asks_and_ends_the_wait_of_who_asked(fresh: Livi
     case.change(fresh)
     fresh.pnc.advance(1)
     assert fresh.ask(case.number, case.channel, case.size) == pytest.approx(case.after)
+
+
+@pytest.mark.covers(
+    "cpl.MCODS.5", "cpl.MCODS.25", "cpl.MCODS.36", "cpl.MCODS.63.val.5", "cpl.MCODS.8", "cpl.MCODS.63"
+)
+def test_a_spindle_that_stands_keeps_the_speed_that_was_programmed(fresh: Living) -> None:
+    fresh.start("N1 S900 M3\nN2 G4 F0.2\nN3 M5\nN4 G4 F9\n", 100)
+    fresh.pnc.control.set_overrides(spindle=0.9)
+    assert [fresh.read(number, -1, 1) for number in (25, 8)] == [[900.0], [9000.0]]
+    assert fresh.read(5, -1, 1) == fresh.read(36, -1, 1)
+    assert 0 < fresh.read(36, -1, 1)[0] <= 900
+    fresh.pnc.advance(3000)
+    assert [fresh.read(number, -1, 1) for number in (25, 36, 63)] == [[900.0], [0.0], [5]]
+
+
+class Scene(NamedTuple):
+    """A program, how long it has run, and what services of channel 1 answer then; a size is that of the answer."""
+
+    program: str
+    cycles: int
+    answers: dict[int, Any]
+
+
+LONG = "AN OPERATOR IS TO TURN THE PART BY 180 DEGREES AND TO CLAMP IT WITH 40 BAR, THEN GO"
+SCENES = [
+    Scene("N1 G70 G1 X5 F100\n", 60, {24: [2540.0], 18: [0], 53: [0, 0, 2], 81: [0, 0, 2], 39: [0], 47: [1, 0, 0]}),
+    Scene(f"N1 (MSG,{LONG})\nN2 G1 X5 F10\n", 60, {28: LONG[:80], 24: [10.0], 39: [0], 32: [3, 1], 87: [0]}),
+    Scene("N1 G0 X300\n", 90, {3: [30000.0, None, 30000.0], 32: [3, 1], 79: [0, 1, 1], 7: [10000.0]}),
+    Scene("N1 G1 X-40 Z-9 F3000\n", 400, {83: "to go", 76: [-40.0, -9.0, 0.0], 77: [-40.0, -9.0, 0.0], 24: [3000.0]}),
+    Scene("N1 G4 F0.1\nN2 G1 X1 F6000\nN3 G4 F0.5\nN4 X2\n", 900, {39: [0], 87: [0], 32: [1, 3], 47: [0, 0, 0]}),
+    Scene("N1 G1 X1 F6000\nN2 G4 F5\n", 300, {39: [1], 87: [1], 32: [3, 1], 79: [1, 1, 1], 6: [1, 1, 1], 3: [0, 0, 0]}),
+    Scene("N1 G1 X1 F6000\nN2 G4 F0.1\n", 700, {39: [0], 87: [0], 32: [1, 3], 47: [0, 0, 0]}),
+    Scene("N1 M0\nN2 G1 X1 F6000\n", 90, {87: [16], 32: [2, 3], 30: "main1", 31: [5], 39: [0]}),
+    Scene("N1 G1 X1 F6000\n2 A=SD(999)\n", 400, {32: [6, 3]}),
+    Scene("N1 G18 G1 X9 F60000\nN2 H3 G41 D3 G1 X20\nN3 G4 F9\n", 300, {9: [3], 10: [42.5], 11: [3], 12: [6.25]}),
+    Scene("N1 G18 G1 X9 F60000\nN2 H3 G41 D3 G1 X20\nN3 G40 H0 G1 X30\nN4 G4 F9\n", 400,
+          {9: [-1], 10: [0], 11: [-1], 12: [0]}),
+    Scene("N1 G54 G1 X9 F60000\nN2 G22 V3\nN3 G22 K5\nN4 G4 F9\n", 300, {13: "K5", 14: "V3", 15: [0.0] * 9}),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    "scene",
+    [
+        pytest.param(
+            each, id=str(place), marks=pytest.mark.covers(*(f"cpl.MCODS.{number}" for number in each.answers))
+        )
+        for place, each in enumerate(SCENES, 1)
+    ],
+)
+def test_services_answer_in_scenes_of_their_own(fresh: Living, scene: Scene) -> None:
+    fresh.write("main1", scene.program)
+    fresh.pnc.select_program("main1")
+    fresh.pnc.cycle_start()
+    fresh.pnc.advance(scene.cycles)
+    for number, wanted in scene.answers.items():
+        channel = -1 if DATA_SERVICES[number].scope == "system" else 1
+        if wanted == "to go":
+            left = [end - fresh.pnc.axes[name].setpoint for name, end in (("X", -40), ("Z", -9))]
+            assert left[0] < -20
+            wanted = [*left, 0.0]
+        found = fresh.glance(number, channel, 90 if isinstance(wanted, str) else len(wanted))
+        if isinstance(wanted, list):
+            found = [each if known is not None else None for each, known in zip(found, wanted, strict=True)]
+        assert found == (wanted if isinstance(wanted, str) else pytest.approx(wanted, abs=1e-3)), number
+
+
+@pytest.mark.covers(
+    "cpl.MCODS.62", "cpl.MCODS.30", "cpl.MCODS.32", "cpl.MCODS.32.sav.11", "cpl.MCODS.32.sav.1"
+)
+@pytest.mark.covers("cpl.MCODS.32.elem.1", "cpl.MCODS.32.elem.2")
+def test_speeds_of_drives_and_what_is_selected(fresh: Living) -> None:
+    assert (fresh.glance(32, 1, 2), fresh.glance(30, 1, 9)) == ([1, 3], "")
+    fresh.write("main1", "N1 G1 X-60 C-3 F6000\n")
+    fresh.pnc.select_program("main1")
+    fresh.pnc.advance(1)
+    assert (fresh.glance(32, 1, 2), fresh.glance(30, 1, 9)) == ([11, 3], "main1")
+    fresh.pnc.cycle_start()
+    fresh.pnc.advance(300)
+    speeds = [round(fresh.pnc.axes[name].velocity * 60) for name in ("X", "Z", "C")]
+    assert speeds[0] < -5900
+    assert fresh.glance(62, -1, 4, 1, 40) == [*speeds[:2], NO, speeds[2]]
+    fresh.until_over()
+    fresh.pnc.select_mode(Mode.MDI, channel=1)
+    fresh.pnc.select_blocks("N1 G1 X5 F600")
+    fresh.pnc.cycle_start()
+    fresh.pnc.advance(30)
+    assert (fresh.glance(32, 1, 2), fresh.glance(30, 1, 9)) == ([3, 1], "")

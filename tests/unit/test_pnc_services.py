@@ -75,8 +75,11 @@ def again(tmp_path: Path) -> Iterator[Two]:
 # ---------------------------------------------------------------------- search, select
 
 
+@pytest.mark.covers("cpl.MCOPS.6")
 @pytest.mark.covers("cpl.MCOPS")
-@pytest.mark.covers("cpl.MCOPS.3", "cpl.MCOPS.4", "cpl.ncs.0", "cpl.ncs.14", "cpl.MCODS.32.sav.2")
+@pytest.mark.covers(
+    "cpl.MCOPS.3", "cpl.MCOPS.4", "cpl.ncs.0", "cpl.ncs.14", "cpl.MCODS.32.sav.2", "cpl.MCODS.32"
+)
 @pytest.mark.parametrize(
     ("name", "start", "end", "code", "x2", "seen"),
     [
@@ -106,7 +109,10 @@ def test_a_part_of_a_program_is_selected_and_machined(
     assert two.sav() is Sav.INACTIVE
 
 
-@pytest.mark.covers("cpl.ncs.10", "cpl.ncs.15", "cpl.ncs.2", "cpl.ncs.8", "cpl.MCODS.32.sav.3")
+@pytest.mark.covers("cpl.MCOPS.3", "cpl.MCOPS.4", "cpl.MCOPS.6")
+@pytest.mark.covers(
+    "cpl.ncs.10", "cpl.ncs.15", "cpl.ncs.2", "cpl.ncs.8", "cpl.MCODS.32.sav.3", "cpl.MCODS.32"
+)
 def test_a_search_is_refused_where_it_cannot_be(two: Two) -> None:
     two.write("STOPS", "N1 G1 X2=1 F6000\nN2 M0\nN3 X2=2\n")
     assert two.ask('MCOPS(3,2,"N3")', 'MCOPS(4,2,"STOPS")', "MCOPS(6,2)", 'MCOPS(3,2,"N3")') == [10, 0, 0, 2]
@@ -121,7 +127,15 @@ def test_a_search_is_refused_where_it_cannot_be(two: Two) -> None:
     assert two.ask('MCOPS(3,2,"N20")') == [8]
 
 
-@pytest.mark.covers("cpl.ncs.6", "cpl.MCOPS.4.code.2", "cpl.MCOPS.4.code.1", "cpl.MCODS.32.sav.6")
+@pytest.mark.covers("cpl.MCOPS.6", "cpl.MCOPS.5")
+@pytest.mark.covers(
+    "cpl.ncs.6",
+    "cpl.MCOPS.4.code.2",
+    "cpl.MCOPS.4.code.1",
+    "cpl.MCODS.32.sav.6",
+    "cpl.MCOPS.4",
+    "cpl.MCODS.32",
+)
 def test_a_missing_program_is_refused_with_code_2_and_else_an_error_of_its_channel(two: Two) -> None:
     two.write("WRONG", "10 A%=\n")
     assert two.ask('MCOPS(4,2,"NONE",,,2)', 'MCOPS(4,2,"WRONG",,,3)') == [6, 6]
@@ -134,8 +148,9 @@ def test_a_missing_program_is_refused_with_code_2_and_else_an_error_of_its_chann
     assert two.x2() == 40
 
 
+@pytest.mark.covers("cpl.MCOPS.6")
 @pytest.mark.covers("cpl.MCOPS")
-@pytest.mark.covers("cpl.ncs.11", "cpl.MCOPS.4.code.64", "cpl.MCOPS.4.code.2048", "cpl.ncs.9")
+@pytest.mark.covers("cpl.ncs.11", "cpl.MCOPS.4.code.64", "cpl.MCOPS.4.code.2048", "cpl.ncs.9", "cpl.MCOPS.4")
 def test_an_active_program_is_left_before_another_one(two: Two) -> None:
     two.pnc.select_program("LONG", channel=2)
     two.pnc.cycle_start(channel=2)
@@ -151,9 +166,10 @@ def test_an_active_program_is_left_before_another_one(two: Two) -> None:
 # ---------------------------------------------------------------------- blocks put in by hand
 
 
+@pytest.mark.covers("cpl.MCOPS.7")
 @pytest.mark.covers(
-    "cpl.MCOPS.4.code.32", "cpl.MCOPS.5", "cpl.MCOPS.6", "cpl.MCODS.32.sav.11", "cpl.MCODS.32.sav.1", "cpl.ncs.10"
-)  # fmt: skip
+    "cpl.MCOPS.4.code.32", "cpl.MCOPS.5", "cpl.MCOPS.6", "cpl.MCODS.32.sav.11", "cpl.MCODS.32.sav.1", "cpl.ncs.10",
+    "cpl.MCOPS.4", "cpl.MCODS.32")  # fmt: skip
 def test_a_block_put_in_by_hand_is_started_by_the_next_call(two: Two) -> None:
     block = 'MCOPS(4,2,"G1 X2=3 F6000",,,32)'
     assert two.ask(block) == [8]
@@ -171,8 +187,9 @@ def test_a_block_put_in_by_hand_is_started_by_the_next_call(two: Two) -> None:
     assert two.x2() == 6
 
 
+@pytest.mark.covers("cpl.MCOPS.5")
 @pytest.mark.covers(
-    "cpl.MCOPS.4.code.128", "cpl.MCOPS.4.code.1024", "cpl.ncs.25", "cpl.ncs.18", "cpl.ncs.102"
+    "cpl.MCOPS.4.code.128", "cpl.MCOPS.4.code.1024", "cpl.ncs.25", "cpl.ncs.18", "cpl.ncs.102", "cpl.MCOPS.4"
 )
 def test_a_block_that_starts_at_once_is_executed_or_refused(two: Two) -> None:
     two.pnc.select_mode(Mode.MDI, channel=2)
@@ -197,7 +214,10 @@ def test_a_block_that_starts_at_once_is_executed_or_refused(two: Two) -> None:
 BUFFERED = 32 + 4096
 
 
-@pytest.mark.covers("cpl.MCOPS.4.code.4096", "cpl.MCODS.32.sav.12", "cpl.ncs.26")
+@pytest.mark.covers("cpl.MCOPS.6", "cpl.MCOPS.5")
+@pytest.mark.covers(
+    "cpl.MCOPS.4.code.4096", "cpl.MCODS.32.sav.12", "cpl.ncs.26", "cpl.MCOPS.4", "cpl.MCODS.32"
+)
 def test_blocks_are_put_in_while_others_are_executed(two: Two) -> None:
     two.pnc.select_mode(Mode.MDI, channel=2)
     write = 'MCOPS(4,2,"{}",,,{})'
@@ -216,6 +236,7 @@ def test_blocks_are_put_in_while_others_are_executed(two: Two) -> None:
     assert two.sav() is Sav.INACTIVE
 
 
+@pytest.mark.covers("cpl.MCOPS.4")
 @pytest.mark.covers("cpl.ncs.26")
 def test_a_buffer_that_is_full_takes_nothing(two: Two) -> None:
     two.pnc.select_mode(Mode.MDI, channel=2)
@@ -229,6 +250,7 @@ def test_a_buffer_that_is_full_takes_nothing(two: Two) -> None:
     assert two.x2() == 2
 
 
+@pytest.mark.covers("cpl.MCOPS.4")
 @pytest.mark.covers("cpl.ncs.7")
 def test_two_programs_cannot_write_into_a_buffer_in_one_cycle(tmp_path: Path) -> None:
     (tmp_path / "three.toml").write_text(MACHINE + AXIS.format("U"))
@@ -247,8 +269,9 @@ def test_two_programs_cannot_write_into_a_buffer_in_one_cycle(tmp_path: Path) ->
 # ---------------------------------------------------------------------- resets, of the own channel too
 
 
+@pytest.mark.covers("cpl.MCOPS.6", "cpl.MCOPS.4")
 @pytest.mark.covers("cpl.MCOPS")
-@pytest.mark.covers("cpl.MCOPS.2", "cpl.MCODS.32.sav.8", "cpl.ncs.3")
+@pytest.mark.covers("cpl.MCOPS.2", "cpl.MCODS.32.sav.8", "cpl.ncs.3", "cpl.MCODS.32")
 def test_a_control_reset_stops_another_channel_and_takes_no_orders_meanwhile(two: Two) -> None:
     two.pnc.select_program("LONG", channel=2)
     two.pnc.cycle_start(channel=2)
@@ -265,6 +288,7 @@ def test_a_control_reset_stops_another_channel_and_takes_no_orders_meanwhile(two
     assert two.ask("MCOPS(6,2)", 'MCOPS(4,2,"PART")', "MCOPS(6,2)") == [10, 0, 0]
 
 
+@pytest.mark.covers("cpl.MCOPS.6", "cpl.MCOPS.4", "cpl.MCOPS.3")
 @pytest.mark.covers("cpl.MCOPS.2", "cpl.MCOPS.5")
 @pytest.mark.parametrize("call", ["MCOPS(2,1)", "MCOPS(5,1)", "MCOPS(2,-2)", "MCOPS(2,1,2)"])
 def test_a_program_that_resets_its_own_channel_ends_there(two: Two, call: str) -> None:
@@ -280,6 +304,7 @@ def test_a_program_that_resets_its_own_channel_ends_there(two: Two, call: str) -
     assert two.ask("MCOPS(6,1)", 'MCOPS(4,1,"PART")', 'MCOPS(3,1,"N2")') == [9, 11, 2]
 
 
+@pytest.mark.covers("cpl.MCOPS.4")
 def test_a_program_that_leaves_itself_hands_over_to_the_next(two: Two) -> None:
     two.write("NEXT", "10 #N%=7\nN1 G1 Y4 F6000\n")
     two.start('N1 G1 X3 F6000\n20 WAIT\n30 #A%=MCOPS(4,1,"NEXT",,,64+128)\n40 #A%=99')
@@ -289,9 +314,19 @@ def test_a_program_that_leaves_itself_hands_over_to_the_next(two: Two) -> None:
     assert two.pnc.variables(1)["#N%"] == 7
 
 
+@pytest.mark.covers("cpl.MCOPS.4", "cpl.MCOPS.6")
 @pytest.mark.covers("cpl.MCOPS", "cpl.ex.3209")
 @pytest.mark.covers(
-    "cpl.MCOPS.2.type.2", "cpl.MCOPS.5.type.2", "cpl.MCODS.70", "cpl.MCODS.70.val.1", "cpl.MCODS.refresh.I"
+    "cpl.MCOPS.2.type.2",
+    "cpl.MCOPS.5.type.2",
+    "cpl.MCODS.70",
+    "cpl.MCODS.70.val.1",
+    "cpl.MCODS.refresh.I",
+    "cpl.ex.3165",
+    "cpl.ex.3209",
+    "cpl.MCOPS.2",
+    "cpl.MCOPS.5",
+    "cpl.MCODS.refresh",
 )
 @pytest.mark.parametrize("service", [2, 5])
 def test_a_program_is_selected_again_unless_that_is_suppressed(again: Two, service: int) -> None:
@@ -305,6 +340,7 @@ def test_a_program_is_selected_again_unless_that_is_suppressed(again: Two, servi
     assert [again.pnc.variables(1)[name] for name in ("#E%", "#F%", "#B%")] == [0, 0, 1]
 
 
+@pytest.mark.covers("cpl.MCOPS.7", "cpl.MCOPS.5")
 @pytest.mark.covers("cpl.MCOPS")
 @pytest.mark.covers("cpl.ncs.13", "cpl.sig.NC-I_3.0")
 def test_starts_and_modes_have_their_conditions(two: Two) -> None:
@@ -312,6 +348,7 @@ def test_starts_and_modes_have_their_conditions(two: Two) -> None:
     assert two.ask("MCOPS(7,2,4)", "MCOPS(7,2,6)", "MCOPS(7,2,5)") == [13, 0, 0]
     pnc = two.pnc
     group, bit = MODE_BY_PLC
+    assert (group, bit) == (0, 3 * 8)  # NC-I 3.0: byte 3 and bit 0 of the inputs of the channel
     pnc.system.interface.set_bit(group, 2, bit, True)
     assert two.ask("MCOPS(7,2,6)") == [13]
     pnc.system.interface.set_bit(group, 2, bit, False)
@@ -325,7 +362,13 @@ def test_starts_and_modes_have_their_conditions(two: Two) -> None:
 
 
 @pytest.mark.covers(
-    "cpl.MCOPS.4.code.256", "cpl.MCOPS.4.code.512", "cpl.MCOPS.7.mode.1", "cpl.MCOPS.7.mode.2", "cpl.ncs.8"
+    "cpl.MCOPS.4.code.256",
+    "cpl.MCOPS.4.code.512",
+    "cpl.MCOPS.7.mode.1",
+    "cpl.MCOPS.7.mode.2",
+    "cpl.ncs.8",
+    "cpl.MCOPS.4",
+    "cpl.MCOPS.7",
 )
 @pytest.mark.parametrize(("mode", "code", "other"), [(1, 256, 512), (2, 512, 256)])
 def test_axes_are_moved_by_hand_where_the_mode_fits(two: Two, mode: int, code: int, other: int) -> None:
@@ -368,7 +411,8 @@ def test_a_channel_in_wait_says_so_and_wakes_who_asks_with_the_version(two: Two,
     assert 98 <= times[2] - times[1] <= 104
 
 
-@pytest.mark.covers("cpl.MCODS.87.bit.13")
+@pytest.mark.covers("cpl.MCODS.31")
+@pytest.mark.covers("cpl.MCODS.87.bit.13", "cpl.MCODS.87")
 def test_a_channel_that_waits_for_data_shows_it(two: Two) -> None:
     two.start("10 DIM W%(1) : V=0\n20 E%=MCODS(31,2,V,W%,1)\n30 E%=MCODS(31,2,V,W%,1)\n40 #M%=W%(1)")
     two.pnc.advance(20)
@@ -378,7 +422,14 @@ def test_a_channel_that_waits_for_data_shows_it(two: Two) -> None:
     assert (two.pnc.variables(1)["#M%"], two.pnc.run_state(1)) == (4, RunState.COMPLETED)
 
 
-@pytest.mark.covers("cpl.MCODS.32.ipo.1", "cpl.MCODS.32.ipo.2", "cpl.MCODS.32.ipo.3", "cpl.MCODS.87.bit.5")
+@pytest.mark.covers(
+    "cpl.MCODS.32.ipo.1",
+    "cpl.MCODS.32.ipo.2",
+    "cpl.MCODS.32.ipo.3",
+    "cpl.MCODS.87.bit.5",
+    "cpl.MCODS.32",
+    "cpl.MCODS.87",
+)
 def test_the_interpolator_runs_down_in_feed_hold(two: Two) -> None:
     two.pnc.select_program("LONG", channel=2)
     two.pnc.cycle_start(channel=2)

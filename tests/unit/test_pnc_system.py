@@ -387,7 +387,7 @@ def test_drives_tell_their_parameters(cell: Cell) -> None:
     assert cell.error('1 A=SCS(1,"S",999)') == "1: INVALID PARAMETER"
 
 
-@pytest.mark.covers("cpl.SCSL", "cpl.SCSL.result.0", "cpl.SCSL.result.2", "cpl.SCS.idtype.P")
+@pytest.mark.covers("cpl.SCSL", "cpl.SCSL.result.0", "cpl.SCSL.result.2", "cpl.SCS.idtype.P", "cpl.SCS")
 def test_lists_of_drives_go_into_a_file(cell: Cell) -> None:
     assert cell.values('10 SCSL(1,"S",187,"LIST",E%)', "E%") == [0]
     assert (cell.folder / "LIST").read_bytes() == b"40\n51\n\x03\n"
@@ -558,7 +558,7 @@ def measuring(cell: Cell) -> Cell:
     return cell
 
 
-@pytest.mark.covers("cpl.ex.1451", "cpl.CPROBE", "cpl.param.1003_00012")
+@pytest.mark.covers("cpl.ex.1451", "cpl.CPROBE", "cpl.param.1003_00012", "cpl.SD.9", "cpl.PROBE", "cpl.PPOS")
 def test_a_coordinate_is_measured(measuring: Cell) -> None:
     blocks = (
         "N5 G168 X10\nN6 G1 X20 Y1 F900\nN10 G75 X20 Y1 Z-50\n20 IF SD(9) = 1 THEN\n"
@@ -571,7 +571,7 @@ def test_a_coordinate_is_measured(measuring: Cell) -> None:
 
 
 @pytest.mark.covers("cpl.CPOS")
-@pytest.mark.covers("cpl.ex.2307", "cpl.nc.MSG_text")
+@pytest.mark.covers("cpl.ex.2307", "cpl.nc.MSG_text", "cpl.SD.9")
 def test_no_contact_is_told_and_no_position_is_given(measuring: Cell) -> None:
     blocks = (
         "N1 G1 X5 F900\nN4 G75 X90\n60 IF SD(9) = 1 THEN\nN7 (MSG, PROBE WAS NOT DEFLECTED)\n80 GOTO .ERROR\n90 ELSE\n"
@@ -599,7 +599,7 @@ def test_what_measured_values_consider(measuring: Cell) -> None:
     assert found == pytest.approx([99.5 / 25.4] * 3, abs=1e-6)
 
 
-@pytest.mark.covers("cpl.CPROBE", "cpl.PPOS")
+@pytest.mark.covers("cpl.CPROBE", "cpl.PPOS", "cpl.SD.9", "cpl.PROBE", "cpl.nc.G275", "cpl.nc.G375")
 def test_one_axis_is_measured_in_passing_and_a_stop_is_reached(measuring: Cell) -> None:
     found = measuring.values("N1 G1 Y3 F900\nN2 G275 Z-20 F900", "SD(9)", "PROBE(3)", "PPOS(3)", "CPOS(3)")
     assert found == pytest.approx([0, -12.345, -12.345, -20], abs=1e-5)

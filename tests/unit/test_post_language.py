@@ -72,7 +72,14 @@ FUNCTIONS = [
     ("DMS(-12.5)", -12.3),
     ("DMS(400.01)", 400.0036),
     ("DMS(7.0001)", 7.0000360),
+    ("DMS(-0.5)", -0.3),
+    ("DMS(-0.01)", -0.0036),
+    ("ADMS(-0.3)", -0.5),
+    ("DMS(7.000123456)", 7.0000444442),
+    ("DMS(0.0833333333)", 0.05),
     ("ADMS(7.00305)", 7.00847222222),
+    ("ADMS(0.57)", 0.95),
+    ("ADMS(-1.13)", -1.2166666666667),
     ("ADMS(-12.3)", -12.5),
     ("ADMS(400.0036)", 400.01),
 ]
@@ -92,6 +99,7 @@ def test_functions_take_radians_and_any_case(call: str, value: float) -> None:
     assert _value(call.replace(inner, f"({inner})*V1+0"), "<V1=1>") == _value(call)
 
 
+@pytest.mark.covers("post.fn.DMS", "post.fn.ADMS")
 def test_degrees_minutes_seconds_carry_and_keep_the_sign() -> None:
     assert _value("DMS(-12.5)") == pytest.approx(-12.3)
     assert _value("DMS(0.1+0.2-0.3+29.999999999999)") == pytest.approx(30.0)

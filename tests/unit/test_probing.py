@@ -165,7 +165,7 @@ def test_a_reset_within_a_probing_move_leaves_no_trace_of_it(tmp_path: Path) -> 
     execution.advance(1000)
     execution.reset()
     execution.advance(100)
-    execution.load(ProgramText.from_text("N1 G1 Z-40 F6000\n"))
+    execution.selection.load(ProgramText.from_text("N1 G1 Z-40 F6000\n"))
     execution.start()
     execution.advance(5000)
     assert execution.machine.setpoints["Z"] == -40

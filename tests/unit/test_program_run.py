@@ -10,7 +10,7 @@ import pytest
 from polycnc.errors import UsageError
 from polycnc.nc import Call, Group, ProgramText
 from support.programs import FIVE
-from support.runs import program_run, stands, to_the_end, undisturbed
+from support.runs import executed_line, program_run, stands, to_the_end, undisturbed
 
 CONTOUR = """\
 N10 G0 X12.5 Y-7.25 Z3
@@ -26,7 +26,7 @@ N40 X-8.125 F900
 def test_nothing_moves_before_the_start() -> None:
     run = program_run(CONTOUR)
     assert stands(run) == "READY"
-    assert run.executed is None
+    assert run.reading.block is None
     assert run.advance(57) == 57
     assert run.machine.setpoints == {"X": 0.0, "Y": 0.0, "Z": 0.0}
     assert run.machine.clock.cycles == 57
@@ -50,8 +50,8 @@ def test_a_finished_program_starts_again_from_its_beginning() -> None:
     to_the_end(run)
     run.start()
     run.advance(5)
-    assert run.executed is not None
-    assert run.executed.sequence == 10
+    assert run.reading.block is not None
+    assert run.reading.block.sequence == 10
     to_the_end(run)
     assert run.machine.setpoints == {"X": -8.125, "Y": 17.75, "Z": 3.0}
 
@@ -65,7 +65,7 @@ def test_the_executed_block_is_known_in_every_cycle() -> None:
     seen: list[object] = []
     while run.active:
         run.advance(1)
-        record = run.executed
+        record = run.reading.block
         assert record is not None
         if not seen or seen[-1] != record.sequence:
             seen.append(record.sequence)
@@ -80,22 +80,22 @@ def test_modal_words_are_those_of_the_executed_block_not_of_the_prepared_one() -
     run = program_run("G55 G0 X1 F300\nG91 G1 X40 F1450\nG18 G90 G41 D2 G1 X60\nG40 X70\nM30\n", FIVE)
     run.start()
     run.advance(3)
-    assert run.modal is not None
-    assert run.modal.g[Group.MOTION] == "G0"
-    assert run.modal.g[Group.PLANE] == "G17"
-    assert run.modal.g[Group.DISTANCE] == "G90"
-    assert run.modal.g[Group.WORK_OFFSET] == "G55"
-    assert run.modal.feed == 300.0
-    assert run.modal.zero[:3] == (100.0, 50.0, -20.0)
-    run.advance(10_000, until=lambda: run.executed is not None and run.executed.line == 2)
-    assert run.modal.g[Group.DISTANCE] == "G91"
-    assert run.modal.g[Group.MOTION] == "G1"
-    assert run.modal.feed == 1450.0
-    assert run.modal.d is None
-    run.advance(10_000, until=lambda: run.executed is not None and run.executed.line == 3)
-    assert run.modal.g[Group.PLANE] == "G18"
-    assert run.modal.g[Group.RADIUS_COMPENSATION] == "G41"
-    assert run.modal.d == 2
+    assert run.reading.modal is not None
+    assert run.reading.modal.g[Group.MOTION] == "G0"
+    assert run.reading.modal.g[Group.PLANE] == "G17"
+    assert run.reading.modal.g[Group.DISTANCE] == "G90"
+    assert run.reading.modal.g[Group.WORK_OFFSET] == "G55"
+    assert run.reading.modal.feed == 300.0
+    assert run.reading.modal.zero[:3] == (100.0, 50.0, -20.0)
+    run.advance(10_000, until=lambda: executed_line(run) == 2)
+    assert run.reading.modal.g[Group.DISTANCE] == "G91"
+    assert run.reading.modal.g[Group.MOTION] == "G1"
+    assert run.reading.modal.feed == 1450.0
+    assert run.reading.modal.d is None
+    run.advance(10_000, until=lambda: executed_line(run) == 3)
+    assert run.reading.modal.g[Group.PLANE] == "G18"
+    assert run.reading.modal.g[Group.RADIUS_COMPENSATION] == "G41"
+    assert run.reading.modal.d == 2
 
 
 def test_plain_blocks_that_went_through_the_compiled_kernel_tell_their_modal_words() -> None:
@@ -115,7 +115,7 @@ def test_plain_blocks_that_went_through_the_compiled_kernel_tell_their_modal_wor
     found = {}
     while run.active:
         run.advance(7)
-        record = run.executed
+        record = run.reading.block
         assert record is not None
         if record.line in expected:
             found[record.line] = (
@@ -132,7 +132,9 @@ def test_plain_blocks_that_went_through_the_compiled_kernel_tell_their_modal_wor
 def test_auxiliary_functions_show_their_own_block_while_the_path_rests_at_them() -> None:
     run = program_run("G0 X4\nM3 S800 T2\nM6\nG1 X9 F500\n", FIVE)
     seen: list[object] = []
-    run.on_event = lambda event: seen.append((event.word, event.line, run.executed and run.executed.text))
+    run.events.on_event = lambda event: seen.append(
+        (event.word, event.line, run.reading.block and run.reading.block.text)
+    )
     run.start()
     to_the_end(run)
     assert seen == [("M3 S800", 2, "M3 S800 T2"), ("M6 T2", 3, "M6")]
@@ -142,13 +144,17 @@ def test_distance_to_go_is_that_of_the_block() -> None:
     run = program_run("G1 X10 F600\nX30 Y5\n")
     run.start()
     run.advance(400)
-    go = run.distance_to_go
-    assert go["X"] == 10.0 - run.position["X"] > 0.0
+    go = run.reading.distance_to_go
+    assert go["X"] == 10.0 - run.reading.position["X"] > 0.0
     assert go["Y"] == 0.0
-    run.advance(10_000, until=lambda: run.position["X"] > 12.0)
-    assert run.distance_to_go == {"X": 30.0 - run.position["X"], "Y": 5.0 - run.position["Y"], "Z": 0.0}
+    run.advance(10_000, until=lambda: run.reading.position["X"] > 12.0)
+    assert run.reading.distance_to_go == {
+        "X": 30.0 - run.reading.position["X"],
+        "Y": 5.0 - run.reading.position["Y"],
+        "Z": 0.0,
+    }
     to_the_end(run)
-    assert run.distance_to_go == {"X": 0.0, "Y": 0.0, "Z": 0.0}
+    assert run.reading.distance_to_go == {"X": 0.0, "Y": 0.0, "Z": 0.0}
 
 
 # --- hold
@@ -164,34 +170,37 @@ def test_a_hold_in_a_sub_program_of_its_own_file_reads_exactly_that_cycle(tmp_pa
     _, end = undisturbed(ProgramText.from_path(main), FIVE)
     run = program_run(ProgramText.from_path(main), FIVE)
     run.start()
-    run.advance(100_000, until=lambda: [call.repeat for call in run.stack] == [2] and run.executed.line == 4)  # type: ignore[union-attr]
+    run.advance(
+        100_000,
+        until=lambda: [call.repeat for call in run.reading.stack] == [2] and executed_line(run) == 4,
+    )
     run.advance(60)
     run.hold()
     assert stands(run) == "HOLD"
     run.advance(5_000, until=lambda: run.at_rest)
-    record = run.executed
+    record = run.reading.block
     assert record is not None
     assert (record.program, record.line, record.text, record.sequence) == (str(sub), 4, "N120 Y6.5 F800", 120)
-    assert record.stack == (Call(str(main), 4, 2),) == run.stack
+    assert record.stack == (Call(str(main), 4, 2),) == run.reading.stack
     assert record.modal.g[Group.DISTANCE] == "G91"
     assert record.modal.g[Group.WORK_OFFSET] == "G55"
     assert record.modal.feed == 800.0
     # Behind two rounds less the last block of the second: from X5 Y2, absolute from there on.
     corner = (5.0 + 12.75 - 4.25 + 12.75, 2.0 + 6.5 - 1.125)
-    assert run.position["X"] == corner[0]
-    assert corner[1] < run.position["Y"] < corner[1] + 6.5
-    assert run.distance_to_go["Y"] == pytest.approx(corner[1] + 6.5 - run.position["Y"])
-    assert run.distance_to_go["X"] == 0.0
-    held = run.position
+    assert run.reading.position["X"] == corner[0]
+    assert corner[1] < run.reading.position["Y"] < corner[1] + 6.5
+    assert run.reading.distance_to_go["Y"] == pytest.approx(corner[1] + 6.5 - run.reading.position["Y"])
+    assert run.reading.distance_to_go["X"] == 0.0
+    held = run.reading.position
     run.advance(300)
-    assert run.position == held
-    run.single_block = True
+    assert run.reading.position == held
+    run.switches.single_block = True
     stops = []
     while stands(run) != "COMPLETED":
         run.resume()
         to_the_end(run)
-        assert run.executed is not None
-        stops.append((run.executed.program == str(sub), run.executed.line))
+        assert run.reading.block is not None
+        stops.append((run.reading.block.program == str(sub), run.reading.block.line))
     assert stops[:2] == [(True, 4), (True, 5)]
     assert stops[-2:] == [(False, 5), (False, 6)]
     assert run.machine.setpoints == end
@@ -227,8 +236,8 @@ def test_m0_stands_until_resumed_and_prepares_nothing_behind_it() -> None:
     run.start()
     run.advance(100_000)
     assert stands(run) == "PROGRAM_STOP"
-    assert run.executed is not None
-    assert run.executed.text == "M0"
+    assert run.reading.block is not None
+    assert run.reading.block.text == "M0"
     assert run.machine.setpoints["X"] == 10.0
     assert run.channel.blocks == 2
     assert run.advance(1234) == 1234
@@ -244,7 +253,7 @@ def test_m1_stands_with_the_optional_stop(on: bool, stops: int) -> None:
     run = program_run("G1 X10 F600\nM1\nX30\nM30\n")
     run.start()
     run.advance(20)
-    run.optional_stop = on  # looked at when the path comes there
+    run.switches.optional_stop = on  # looked at when the path comes there
     to_the_end(run)
     assert (stands(run) == "OPTIONAL_STOP") == bool(stops)
     if stops:
@@ -273,8 +282,8 @@ def test_single_block_stops_at_the_end_of_every_block_on_its_end_point() -> None
     run.start()
     while stands(run) != "COMPLETED":
         to_the_end(run)
-        assert run.executed is not None
-        ends.append((run.executed.sequence, run.position["X"], run.position["Y"]))
+        assert run.reading.block is not None
+        ends.append((run.reading.block.sequence, run.reading.position["X"], run.reading.position["Y"]))
         assert run.at_rest
         if stands(run) == "STOPPED_AT_BLOCK":
             run.resume()
@@ -287,15 +296,15 @@ def test_single_block_switched_on_in_motion_stops_at_the_next_end_that_can_be_re
     program = "G1 F6000 X10\n" + "".join(f"X{10 + 0.5 * n:g}\n" for n in range(1, 61))
     run = program_run(program)
     run.start()
-    run.advance(10_000, until=lambda: run.executed is not None and run.executed.line == 9)
-    at = run.position["X"]
-    run.single_block = True
+    run.advance(10_000, until=lambda: executed_line(run) == 9)
+    at = run.reading.position["X"]
+    run.switches.single_block = True
     to_the_end(run)
     assert stands(run) == "STOPPED_AT_BLOCK"
-    stopped = run.position["X"]
+    stopped = run.reading.position["X"]
     assert stopped * 2.0 == math.floor(stopped * 2.0)
     assert at + 1.0 < stopped < at + 6.0
-    run.single_block = False
+    run.switches.single_block = False
     run.resume()
     to_the_end(run)
     assert run.machine.setpoints["X"] == 40.0
@@ -308,7 +317,7 @@ def test_the_feed_override_scales_the_feed_and_leaves_rapids_alone() -> None:
     times = {}
     for factor in (0.5, 1.0, 2.0):
         run = program_run("G1 X50 F600\n")
-        run.feed_override = factor
+        run.overrides.feed = factor
         run.start()
         times[factor] = to_the_end(run)
     # 50 mm at 5, 10 and 20 mm/s, and a ramp of v / a.
@@ -316,12 +325,12 @@ def test_the_feed_override_scales_the_feed_and_leaves_rapids_alone() -> None:
     assert times[1.0] == math.ceil((50 / 10 + 10 / 5000) / 0.001 - 1e-6)
     assert times[2.0] == math.ceil((50 / 20 + 20 / 5000) / 0.001 - 1e-6)
     run = program_run("G0 X50\nG1 X60 F600\n")
-    run.feed_override = 0.0
+    run.overrides.feed = 0.0
     run.start()
     run.advance(5000)
     assert run.machine.setpoints["X"] == 50.0
     assert run.active
-    run.feed_override = 1.0
+    run.overrides.feed = 1.0
     to_the_end(run)
     assert run.machine.setpoints["X"] == 60.0
 
@@ -329,10 +338,10 @@ def test_the_feed_override_scales_the_feed_and_leaves_rapids_alone() -> None:
 @pytest.mark.parametrize("factor", [-0.1, 2.01, math.nan])
 def test_an_override_out_of_range_changes_nothing(factor: float) -> None:
     run = program_run(CONTOUR)
-    run.feed_override = 0.7
+    run.overrides.feed = 0.7
     with pytest.raises(UsageError, match="the feed override"):
-        run.feed_override = factor
-    assert run.feed_override == 0.7
+        run.overrides.feed = factor
+    assert run.overrides.feed == 0.7
 
 
 def test_a_reset_brakes_on_the_path_and_the_next_start_begins_anew() -> None:
@@ -340,7 +349,7 @@ def test_a_reset_brakes_on_the_path_and_the_next_start_begins_anew() -> None:
     run.start()
     run.advance(100)
     speed = float(run.machine.state.velocity[0])
-    at = run.position["X"]
+    at = run.reading.position["X"]
     run.reset()
     assert stands(run) == "RESET"
     braking = not run.at_rest
@@ -349,7 +358,7 @@ def test_a_reset_brakes_on_the_path_and_the_next_start_begins_anew() -> None:
         run.start()
     run.advance(200)
     assert run.at_rest
-    stopped = run.position["X"]
+    stopped = run.reading.position["X"]
     assert stopped == pytest.approx(at + speed**2 / (2 * 5000), abs=0.2)
     run.advance(200)
     assert run.machine.setpoints["X"] == stopped
@@ -368,10 +377,10 @@ def test_blocks_ahead_is_how_far_preparation_goes() -> None:
     deepest = 0
     while run.active:
         run.advance(1)
-        assert run.executed is not None
+        assert run.reading.block is not None
         if run.active:
-            deepest = max(deepest, run.channel.blocks - run.executed.line)
-            assert run.channel.blocks - run.executed.line <= 4
+            deepest = max(deepest, run.channel.blocks - run.reading.block.line)
+            assert run.channel.blocks - run.reading.block.line <= 4
     assert deepest >= 3
     assert run.machine.setpoints["Y"] == 39.0
 

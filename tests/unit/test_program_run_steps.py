@@ -13,7 +13,7 @@ from polycnc.machine import Machine
 from polycnc.nc import Event, Group, ProgramText, load_dialect
 from polycnc.nc.macro import MacroLanguage
 from support.programs import FIVE, LINEAR, MILL, SPINDLE, TIMES, machine_config
-from support.runs import program_run, stands, to_the_end, undisturbed
+from support.runs import executed_line, program_run, stands, to_the_end, undisturbed
 
 MAIN = "N1 G0 X5 Y2\nN2 G91 F1200\nN3 M98 P815\nN4 G90 G1 X1 Y7\nM30\n"
 SUB = "O0815\nN110 G1 X12.75\nN120 M98 P816 L2\nN130 X-4.25\nM99\n"
@@ -29,7 +29,7 @@ def nested(tmp_path: Path) -> ProgramText:
 
 
 def at(run: ProgramRun) -> tuple[str, int]:
-    record = run.executed
+    record = run.reading.block
     assert record is not None
     return Path(record.program).stem, record.line
 
@@ -90,11 +90,11 @@ def test_stepping_out_ends_behind_the_sub_program(nested: ProgramText) -> None:
     run = program_run(nested)
     steps(run, *["into"] * 8)
     assert at(run) == ("O0816", 2)
-    assert run.position["Y"] == 3.5
-    assert [call.repeat for call in run.stack] == [1, 1]
+    assert run.reading.position["Y"] == 3.5
+    assert [call.repeat for call in run.reading.stack] == [1, 1]
     steps(run, "out")
     # The second round of the inner program is another call of the same depth: both rounds are left.
-    assert run.position["Y"] == 5.0
+    assert run.reading.position["Y"] == 5.0
     assert at(run) == ("O0816", 3)
     assert steps(run, "into") == [("O0815", 4)]
     assert steps(run, "out") == [("O0815", 5)]
@@ -117,10 +117,10 @@ def test_a_step_from_a_hold_ends_with_the_block_that_is_held() -> None:
     run.advance(150)
     run.hold()
     run.advance(300)
-    assert 5.0 < run.position["X"] < 20.0
+    assert 5.0 < run.reading.position["X"] < 20.0
     run.step_into()
     to_the_end(run)
-    assert run.position["X"] == 20.0
+    assert run.reading.position["X"] == 20.0
     assert stands(run) == "STOPPED_AT_BLOCK"
 
 
@@ -129,12 +129,12 @@ def test_a_step_from_a_hold_ends_with_the_block_that_is_held() -> None:
 
 def test_a_breakpoint_stops_before_its_block(nested: ProgramText) -> None:
     run = program_run(nested)
-    run.breakpoints = [Breakpoint(str(Path(nested.name).with_name("O0815.nc")), 4)]
+    run.switches.breakpoints = [Breakpoint(str(Path(nested.name).with_name("O0815.nc")), 4)]
     run.start()
     to_the_end(run)
     assert stands(run) == "STOPPED_AT_BLOCK"
-    assert run.position == {"X": 17.75, "Y": 5.0, "Z": 0.0}
-    run.breakpoints = []
+    assert run.reading.position == {"X": 17.75, "Y": 5.0, "Z": 0.0}
+    run.switches.breakpoints = []
     run.resume()
     to_the_end(run)
     assert stands(run) == "COMPLETED"
@@ -144,11 +144,11 @@ def test_a_breakpoint_of_no_program_holds_in_every_one_and_one_set_in_motion_cou
     run = program_run("".join(f"G1 X{n} F3000\n" for n in range(1, 60)))
     run.start()
     run.advance(60)
-    run.breakpoints = [Breakpoint(line=31), Breakpoint(line=47)]
+    run.switches.breakpoints = [Breakpoint(line=31), Breakpoint(line=47)]
     stops = []
     while run.active:
         to_the_end(run)
-        stops.append(run.position["X"])
+        stops.append(run.reading.position["X"])
         if stands(run) == "STOPPED_AT_BLOCK":
             run.resume()
     assert stops == [30.0, 46.0, 59.0]
@@ -156,30 +156,30 @@ def test_a_breakpoint_of_no_program_holds_in_every_one_and_one_set_in_motion_cou
 
 def test_a_breakpoint_that_comes_to_others_in_motion_counts_in_what_is_prepared() -> None:
     run = program_run("".join(f"G1 X{n} F3000\n" for n in range(1, 60)))
-    run.breakpoints = [Breakpoint(line=55)]
+    run.switches.breakpoints = [Breakpoint(line=55)]
     run.start()
     run.advance(60)
-    run.breakpoints = [Breakpoint(line=31), Breakpoint(line=55)]
+    run.switches.breakpoints = [Breakpoint(line=31), Breakpoint(line=55)]
     to_the_end(run)
-    assert run.position["X"] == 30.0
-    run.breakpoints = []  # and one that is taken away does not
+    assert run.reading.position["X"] == 30.0
+    run.switches.breakpoints = []  # and one that is taken away does not
     run.resume()
     to_the_end(run)
-    assert (stands(run), run.position["X"]) == ("COMPLETED", 59.0)
+    assert (stands(run), run.reading.position["X"]) == ("COMPLETED", 59.0)
 
 
 def test_a_condition_stops_where_it_has_become_true_and_prepares_no_further() -> None:
     run = program_run("".join(f"G1 X{n} F3000\n" for n in range(1, 60)))
-    run.breakpoints = [Breakpoint(condition=lambda: run.channel.state.modal.position[0] > 17.5)]
+    run.switches.breakpoints = [Breakpoint(condition=lambda: run.channel.state.modal.position[0] > 17.5)]
     run.start()
     to_the_end(run)
     assert stands(run) == "STOPPED_AT_BLOCK"
-    assert run.position["X"] == 18.0
+    assert run.reading.position["X"] == 18.0
     assert run.channel.state.modal.position[0] == 18.0
-    run.breakpoints = []
+    run.switches.breakpoints = []
     run.resume()
     to_the_end(run)
-    assert run.position["X"] == 59.0
+    assert run.reading.position["X"] == 59.0
 
 
 # --- search
@@ -187,11 +187,11 @@ def test_a_condition_stops_where_it_has_become_true_and_prepares_no_further() ->
 
 def test_a_search_without_calculation_begins_at_the_block_with_the_first_state() -> None:
     run = program_run("N10 G91 G1 X5 F600\nN20 X10\nN30 X7 F900\nM30\n")
-    assert run.search(sequence=30) == 3
+    assert run.selection.search(sequence=30) == 3
     run.start()
     to_the_end(run)
-    assert run.modal is not None
-    assert run.modal.g[Group.DISTANCE] == "G90"
+    assert run.reading.modal is not None
+    assert run.reading.modal.g[Group.DISTANCE] == "G90"
     assert run.machine.setpoints["X"] == 7.0
 
 
@@ -199,20 +199,20 @@ def test_a_search_with_calculation_goes_to_where_the_block_begins() -> None:
     program = "N10 G91 G1 X5 F600\nN15 M3 S400\nN20 X10 Y2\nN30 X7 F900\nM30\n"
     run = program_run(program, FIVE)
     words: list[str] = []
-    run.on_event = lambda event: words.append(event.word)
-    assert run.search(line=4, calculate=True) == 4
+    run.events.on_event = lambda event: words.append(event.word)
+    assert run.selection.search(line=4, calculate=True) == 4
     assert run.machine.setpoints["X"] == 0.0
-    run.single_block = True
+    run.switches.single_block = True
     run.start()
     to_the_end(run)
-    assert (run.position["X"], run.position["Y"]) == (15.0, 2.0)
+    assert (run.reading.position["X"], run.reading.position["Y"]) == (15.0, 2.0)
     run.resume()
     to_the_end(run)
-    assert run.modal is not None
-    assert run.modal.g[Group.DISTANCE] == "G91"
-    assert run.modal.feed == 900.0
-    assert run.modal.speed == 400.0
-    assert run.position["X"] == 22.0
+    assert run.reading.modal is not None
+    assert run.reading.modal.g[Group.DISTANCE] == "G91"
+    assert run.reading.modal.feed == 900.0
+    assert run.reading.modal.speed == 400.0
+    assert run.reading.position["X"] == 22.0
     run.resume()
     to_the_end(run)
     assert words == ["M30"]  # functions before the block are not given out
@@ -221,10 +221,10 @@ def test_a_search_with_calculation_goes_to_where_the_block_begins() -> None:
 
 def test_a_search_with_calculation_goes_through_sub_programs(nested: ProgramText) -> None:
     run = program_run(nested)
-    run.search(sequence=4, calculate=True)
+    run.selection.search(sequence=4, calculate=True)
     run.step_into()
     to_the_end(run)
-    assert run.position == {"X": 5.0 + 12.75 - 4.25, "Y": 2.0 + 3.0, "Z": 0.0}
+    assert run.reading.position == {"X": 5.0 + 12.75 - 4.25, "Y": 2.0 + 3.0, "Z": 0.0}
 
 
 def test_a_search_with_calculation_executes_macro_statements() -> None:
@@ -232,8 +232,8 @@ def test_a_search_with_calculation_executes_macro_statements() -> None:
     text = "#1=0\nWHILE[#1LT3]DO1\n#1=#1+1\nN20 G91 G1 X[#1*2] F600\nEND1\nN50 Y#1\nN60 X-#1\nM30\n"
     program = ProgramText.from_text(text, "test")
     run = ProgramRun(Machine(MILL), program, load_dialect("fanuc"), language=MacroLanguage())
-    assert run.search(sequence=50, calculate=True) == 6
-    assert run.searched == (12.0, 0.0, 0.0)
+    assert run.selection.search(sequence=50, calculate=True) == 6
+    assert run.selection.searched == (12.0, 0.0, 0.0)
     assert run.machine.setpoints["X"] == 0.0
     run.start()
     to_the_end(run)
@@ -255,7 +255,7 @@ def test_a_search_for_what_is_not_there_leaves_the_program_at_its_beginning(
 ) -> None:
     run = program_run("N10 G1 G41 D1 X15 F600\nN20 X30\nM30\nN40 X50\n", FIVE)
     with pytest.raises(UsageError, match=what):
-        run.search(**where)  # type: ignore[arg-type]
+        run.selection.search(**where)  # type: ignore[arg-type]
     assert stands(run) == "READY"
     run.start()
     run.advance(30)
@@ -272,10 +272,10 @@ def test_mdi_keeps_modal_words_from_one_input_to_the_next() -> None:
     run.mdi("X4\n")
     to_the_end(run)
     assert run.machine.setpoints["X"] == 8.0
-    assert run.modal is not None
-    assert (run.modal.g[Group.DISTANCE], run.modal.feed) == ("G91", 1300.0)
+    assert run.reading.modal is not None
+    assert (run.reading.modal.g[Group.DISTANCE], run.reading.modal.feed) == ("G91", 1300.0)
     assert at(run) == ("MDI", 1)
-    run.load(ProgramText.from_text("G1 X9 F100\n", "again"))
+    run.selection.load(ProgramText.from_text("G1 X9 F100\n", "again"))
     run.start()
     to_the_end(run)
     assert run.machine.setpoints["X"] == 9.0  # a program begins with the dialect's state
@@ -298,7 +298,7 @@ def test_block_delete_acts_on_blocks_prepared_afterwards() -> None:
     run = program_run("G1 X5 F600\nM0\n/2 X10\n/ X11\nY3\n")
     run.start()
     to_the_end(run)
-    run.block_delete = {2}
+    run.switches.block_delete = {2}
     run.resume()
     to_the_end(run)
     assert run.machine.setpoints == {"X": 11.0, "Y": 3.0, "Z": 0.0}
@@ -306,19 +306,19 @@ def test_block_delete_acts_on_blocks_prepared_afterwards() -> None:
 
 def test_a_dry_run_goes_with_its_own_feed() -> None:
     run = program_run("G1 X50 F600\n", dry_run_mm_s=40.0)
-    run.dry_run = True
+    run.overrides.dry_run = True
     run.start()
     assert to_the_end(run) == math.ceil((50 / 40 + 40 / 5000) / 0.001 - 1e-6)
     with pytest.raises(UsageError, match="no feed for a dry run"):
-        program_run("G1 X50 F600\n").dry_run = True
+        program_run("G1 X50 F600\n").overrides.dry_run = True
 
 
 def test_the_rapid_override_and_its_lowest_speed() -> None:
     times = {}
     for factor in (1.0, 0.5, 0.25, 0.0):
         run = program_run("G0 X100\n", rapid_f0_mm_s=20.0)
-        run.rapid_override = factor
-        assert run.rapid_override == factor
+        run.overrides.rapid = factor
+        assert run.overrides.rapid == factor
         run.start()
         times[factor] = to_the_end(run)
     speeds = {1.0: 500.0, 0.5: 250.0, 0.25: 125.0, 0.0: 20.0}
@@ -326,28 +326,28 @@ def test_the_rapid_override_and_its_lowest_speed() -> None:
         factor: math.ceil((100 / speed + speed / 5000) / 0.001 - 1e-6) for factor, speed in speeds.items()
     }
     standing = program_run("G1 X3 F600\nG0 X100\n")
-    standing.rapid_override = 0.0
+    standing.overrides.rapid = 0.0
     standing.start()
     standing.advance(5000)
-    assert standing.position["X"] == 3.0
-    standing.rapid_override = 1.0
+    assert standing.reading.position["X"] == 3.0
+    standing.overrides.rapid = 1.0
     to_the_end(standing)
-    assert standing.position["X"] == 100.0
+    assert standing.reading.position["X"] == 100.0
 
 
 def test_the_machine_lock_lets_the_path_run_without_the_axes() -> None:
     run = program_run("G1 X50 F6000\nX20\n")
-    run.machine_lock = True
+    run.switches.machine_lock = True
     run.start()
     run.advance(100)
-    assert run.position["X"] > 5.0
+    assert run.reading.position["X"] > 5.0
     assert run.machine.setpoints["X"] == 0.0
     with pytest.raises(UsageError, match="while the axes move"):
-        run.machine_lock = False
+        run.switches.machine_lock = False
     to_the_end(run)
-    assert run.position["X"] == 20.0
+    assert run.reading.position["X"] == 20.0
     assert run.machine.setpoints["X"] == 0.0
-    run.machine_lock = False
+    run.switches.machine_lock = False
     run.start()
     to_the_end(run)
     assert run.machine.setpoints["X"] == 20.0
@@ -362,18 +362,18 @@ def test_the_path_stands_at_a_function_until_it_is_answered() -> None:
     asked: list[tuple[str, float, float]] = []
 
     def ask(event: Event) -> bool:
-        asked.append((event.word, event.default_s, run.position["X"]))
+        asked.append((event.word, event.default_s, run.reading.position["X"]))
         return True
 
-    run.on_event = ask
+    run.events.on_event = ask
     run.start()
     run.advance(4000)
     assert asked == [("M8", 0.25, 5.0)]
     assert run.active
-    assert run.position["X"] == 5.0
-    run.answered()
+    assert run.reading.position["X"] == 5.0
+    run.events.answered()
     to_the_end(run)
-    assert run.position["X"] == 10.0
+    assert run.reading.position["X"] == 10.0
 
 
 def test_answers_after_the_machine_files_times_take_the_cycles_of_the_queue() -> None:
@@ -387,12 +387,12 @@ def test_answers_after_the_machine_files_times_take_the_cycles_of_the_queue() ->
         due.append(run.machine.clock.cycles + round(event.default_s / 0.001))
         return due[-1] > run.machine.clock.cycles
 
-    run.on_event = ask
+    run.events.on_event = ask
     run.start()
     while run.active:
         run.advance(1)
         if due and run.machine.clock.cycles == due[-1]:
-            run.answered()
+            run.events.answered()
     assert run.machine.clock.cycles == cycles
 
 
@@ -407,13 +407,13 @@ def test_a_work_offset_changed_while_it_runs_acts_on_blocks_prepared_afterwards(
     config = FIVE.model_copy(update={"offsets": offsets})
     run = program_run("G54 G1 X5 F6000\nX6\nX7\nX8\nX9\nX10\n", config, blocks_ahead=1)
     run.start()
-    run.advance(100_000, until=lambda: run.executed is not None and run.executed.line == 3)
+    run.advance(100_000, until=lambda: executed_line(run) == 3)
     offsets["G54"] = {"X": 100.0}
     offsets.revision += 1
     to_the_end(run)
-    assert run.position["X"] == 110.0
-    assert run.modal is not None
-    assert run.modal.zero[0] == 100.0
+    assert run.reading.position["X"] == 110.0
+    assert run.reading.modal is not None
+    assert run.reading.modal.zero[0] == 100.0
 
 
 # --- going back
@@ -425,19 +425,19 @@ def test_a_run_goes_back_to_a_snapshot_and_ends_the_same(cycle: int, nested: Pro
     run.start()
     run.advance(cycle)
     saved, machine = run.snapshot(), run.machine.snapshot()
-    record = run.executed
+    record = run.reading.block
 
     def to_the_end() -> list[object]:
         went: list[object] = []
         while run.active:
             run.advance(1)
-            went.append((run.position, run.executed))
+            went.append((run.reading.position, run.reading.block))
         return went
 
     first = to_the_end()
     run.restore(saved)
     run.machine.restore(machine)
-    assert run.executed == record
+    assert run.reading.block == record
     run.hold()
     run.advance(50)
     run.restore(saved)
@@ -474,8 +474,8 @@ def test_contexts_that_nothing_refers_to_are_forgotten() -> None:
         run.skip()
         most = max(most, len(run.channel.records.snapshot()[0]))
     assert most < 7000
-    assert run.executed is not None
-    assert run.executed.line == 13_999
+    assert run.reading.block is not None
+    assert run.reading.block.line == 13_999
 
 
 def test_time_is_accounted_to_the_tool_in_the_spindle() -> None:
@@ -483,7 +483,7 @@ def test_time_is_accounted_to_the_tool_in_the_spindle() -> None:
     run = program_run(program, FIVE)
     run.start()
     to_the_end(run)
-    times = run.tool_times
+    times = run.reading.tool_times
     assert list(times) == [0, 1, 2]
     assert times[0].cutting_s == pytest.approx(5 / 10 + 10 / 5000, abs=2e-3)
     assert times[1].cutting_s == pytest.approx(20 / 20 + 20 / 5000 + 3 / 20 + 20 / 5000, abs=4e-3)

@@ -65,7 +65,7 @@ def end(control: Control) -> tuple[object, ...]:
     control.advance(200_000, until=lambda: not control.channels[0].active)
     run = control.channels[0].run
     assert run is not None
-    return control.clock.cycles, control.channels[0].run_state, control.machine.snapshot(), run.executed
+    return control.clock.cycles, control.channels[0].run_state, control.machine.snapshot(), run.reading.block
 
 
 @pytest.mark.parametrize("cycle", often([1, 333, 1007, 1804, 2450, 3300], 3))

@@ -188,7 +188,7 @@ REFUSED: list[tuple[dict[str, Any], str]] = [
     ({"do": "alarm", "with": {"number": 9}}, "this control has no alarm 9"),
     ({"do": "alarm", "with": {"axis": "Q"}}, "there is no axis Q"),
     ({"do": "drop"}, "drop happens to a door"),
-    ({"do": "drop", "door": "http"}, "requests of the door 'http' are not counted"),
+    ({"do": "drop", "door": "ftp"}, "requests of the door 'ftp' are not counted"),
     ({"do": "half", "door": "opcua"}, "half does not happen to opcua"),
     ({"do": "latency", "door": "opcua"}, ""),
     ({"do": "part", "for_s": 1.0}, "part has no end"),

@@ -48,8 +48,10 @@ CASES = [
 ]
 
 
-@pytest.mark.parametrize(("dialect", "language", "statement"), CASES)
-@pytest.mark.parametrize("line", often([1, 2, 5, 8, 10], 3))
+@pytest.mark.parametrize(
+    ("dialect", "language", "statement", "line"),
+    often([(*case, line) for case in CASES for line in (1, 2, 5, 8, 10)], 2 * len(CASES) - 1),
+)
 def test_a_searched_block_begins_where_the_whole_program_would(
     dialect: str, language: bool, statement: bool, line: int
 ) -> None:
@@ -72,8 +74,8 @@ def test_a_searched_block_begins_where_the_whole_program_would(
         part.search(line=line, calculate=True)
         run = part.channels[0].run
         assert run is not None
-        assert run.searched is not None
-        assert tuple(round(each, 6) for each in run.searched) == begin
+        assert run.selection.searched is not None
+        assert tuple(round(each, 6) for each in run.selection.searched) == begin
 
 
 @pytest.mark.parametrize(("dialect", "language", "statement"), [each for each in CASES if not each[2]])
@@ -102,8 +104,8 @@ def test_long_plain_programs_are_searched_beyond_what_is_read_at_once() -> None:
             control.search(line=line, calculate=True)
             run = control.channels[0].run
             assert run is not None
-            assert run.searched is not None
-            assert run.searched[0] == line - 2
+            assert run.selection.searched is not None
+            assert run.selection.searched[0] == line - 2
 
 
 def test_custom_macros_do_not_end_at_a_block_that_is_given() -> None:

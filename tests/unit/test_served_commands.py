@@ -18,6 +18,7 @@ from polycnc.machine import Wall
 from polycnc.servers.commands import COMMANDS, NUMBERS, carry_out, model_of
 from polycnc.servers.machines import Keeper, ServedDevice, ServedMachine
 from polycnc.servers.process import KINDS, Machinery
+from support.often import share
 
 R = TypeVar("R")
 
@@ -158,7 +159,7 @@ JSON = st.recursive(
 )
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=share(60), deadline=None)
 @given(st.data())
 def test_random_values_are_carried_out_or_refused(data: st.DataObject) -> None:
     name = data.draw(st.sampled_from(sorted(COMMANDS)))

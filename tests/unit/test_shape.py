@@ -44,11 +44,6 @@ EXCEPTIONS: dict[str, tuple[str, ...]] = {
         "runner/comparison/_distance.py farthest",
         "runner/comparison/_distance.py in_one_order",
     ),
-    "commands and readings of one control, a few lines each: what they do lies in its parts": (
-        "cnc/_program_run.py",
-        "cnc/_program_run.py ProgramRun",
-    ),
-    "one method or branch for each statement of a language, which share what is known of the program": (),
     "one course of motion, in which each record changes what the next one means": (
         "post/macros/_rows.py write_rows",
         "post/output/_motion.py Motion",

@@ -73,14 +73,14 @@ def test_a_region_of_the_machine_file_stops_the_move(
     assert 12.345 <= latched <= 12.345 + 0.0101  # one cycle at 10 mm/s
     assert latched + 0.03 <= stood <= latched + 0.08  # braking from 10 mm/s at 1000 mm/s2 takes 0.05 mm
     expected = {"incremental": stood + 2.5, "absolute": 40.0, "there": stood}[place]
-    assert made.position["X"] == pytest.approx(expected, abs=1e-9)
+    assert made.reading.position["X"] == pytest.approx(expected, abs=1e-9)
 
 
 def test_both_ways_of_running_stop_at_the_same_place(tmp_path: Path) -> None:
     text = "G90 G1 X3 Y1 F3000\nG31 X50 Y20 F900\n#100=#5061\nG91 X1\nM30\n"
     file = machine_file(tmp_path, "X = [7.77, 9]\nY = [0, 30]")
     (first, one), (second, two) = executed(text, file), executed(text, file, closed=True)
-    assert first.position == second.position
+    assert first.reading.position == second.reading.position
     latched = one.variables.get(100), two.variables.get(100)
     assert latched[0] == pytest.approx(latched[1], abs=1e-9)
     assert first.machine.clock.cycles == second.machine.clock.cycles
@@ -88,14 +88,14 @@ def test_both_ways_of_running_stop_at_the_same_place(tmp_path: Path) -> None:
 
 def test_without_a_signal_the_move_goes_to_its_end() -> None:
     made, language = executed("G31 X7.25 F600\n#100=#5061\nM30\n")
-    assert (made.position["X"], language.variables.get(100)) == (7.25, 7.25)
+    assert (made.reading.position["X"], language.variables.get(100)) == (7.25, 7.25)
 
 
 def test_a_region_that_is_not_met_does_not_matter(tmp_path: Path) -> None:
     made, language = executed(
         "G31 X7.25 F600\n#100=#5061\nM30\n", machine_file(tmp_path, "X = [3, 5]\nZ = [-9, -1]")
     )
-    assert (made.position["X"], language.variables.get(100)) == (7.25, 7.25)
+    assert (made.reading.position["X"], language.variables.get(100)) == (7.25, 7.25)
 
 
 def test_a_signal_that_is_on_at_the_beginning_ends_the_move_at_once(tmp_path: Path) -> None:
@@ -103,13 +103,13 @@ def test_a_signal_that_is_on_at_the_beginning_ends_the_move_at_once(tmp_path: Pa
         "G1 X3 F3000\nG31 X50 F600\n#100=#5061\nG91 G1 Y1\nM30\n", machine_file(tmp_path, "X = [2, 5]")
     )
     assert language.variables.get(100) == pytest.approx(3.0, abs=0.0101)  # what one cycle goes
-    assert made.position["X"] == pytest.approx(3.0, abs=0.07)
-    assert made.position["Y"] == 1.0
+    assert made.reading.position["X"] == pytest.approx(3.0, abs=0.07)
+    assert made.reading.position["Y"] == 1.0
 
 
 def test_other_moves_pay_no_attention_to_the_signal(tmp_path: Path) -> None:
     made, _ = executed("G1 X20 F3000\nG0 X30\nM30\n", machine_file(tmp_path, "X = [2, 5]"))
-    assert made.position["X"] == 30.0
+    assert made.reading.position["X"] == 30.0
 
 
 def test_functions_and_stops_of_the_block_still_come(tmp_path: Path) -> None:
@@ -136,8 +136,8 @@ def test_work_offsets_and_turned_positions_count(tmp_path: Path) -> None:
     text = "G10 L2 P1 X5\nG54\nG68 X0 Y0 R90\nG90 G1 X0 Y0 F3000\nG31 X20 F600\n#100=#5062\nG91 G1 X1\nM30\n"
     made, language = executed(text, machine_file(tmp_path, "Y = [7, 100]"))
     assert language.variables.get(100) == pytest.approx(7.0, abs=0.0101)
-    assert made.position["Y"] == pytest.approx(8.06, abs=0.02)
-    assert made.position["X"] == pytest.approx(5.0, abs=1e-9)
+    assert made.reading.position["Y"] == pytest.approx(8.06, abs=0.02)
+    assert made.reading.position["X"] == pytest.approx(5.0, abs=1e-9)
 
 
 # ---------------------------------------------------------------------- on a control

@@ -14,6 +14,7 @@ from hypothesis import strategies as st
 from polycnc.errors import UsageError
 from polycnc.machine import StoreError, _store_file
 from polycnc.machine._store import Area, Entry, Store
+from support.often import share
 
 
 @pytest.fixture(params=["memory", "file"])
@@ -156,7 +157,7 @@ keys = st.integers(-(2**63), 2**63 - 1) | st.text(st.characters(exclude_categori
 changes = st.lists(st.tuples(st.sampled_from("sdp"), keys, st.binary(max_size=20)), max_size=30)
 
 
-@settings(deadline=None, max_examples=60)
+@settings(deadline=None, max_examples=share(60))
 @given(changes)
 def test_an_area_behaves_like_a_dictionary(steps: list[tuple[str, int | str, bytes]]) -> None:
     with Store() as store:

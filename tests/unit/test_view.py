@@ -244,3 +244,18 @@ def test_a_tool_hangs_from_the_spindle_and_has_its_shape() -> None:
     assert about["shapes"]["3"]["hang"] == [0.0, 0.0, -71.0]
     assert about["zero"] == pytest.approx([0.0, 0.0, 0.0])
     assert columns["tip"].reshape(3, -1)[2, -1] == pytest.approx(-2.0)
+
+
+def test_what_comes_after_an_alarm_is_in_the_page_without_its_time() -> None:
+    """The block of the alarm is left out, the run and its times end there; a control's program is not run twice."""
+    program = "G0 X5 Y7 Z2\nG1 Z-3 F600\nX41\nG2 X80 Y7 I3 J0\nG1 Y29\nG0 Z11\nM30\n"
+    view = view_program(program, "mill3")
+    about, columns = _content(view.html)
+    assert [each["line"] for each in about["remarks"] if each["kind"] == "alarm"] == [4]
+    tips = columns["rest_tip"].reshape(3, -1)
+    assert tips[:, 0] == pytest.approx((41.0, 7.0, -3.0), abs=0.01)
+    assert tips[:, -1] == pytest.approx((41.0, 29.0, 11.0), abs=0.01)
+    assert columns["t_s"][-1] == pytest.approx(view.result.time_s, abs=0.002)
+    assert "rest_tip" not in _content(view_program("G1 X9 F600\nM30\n", "mill3").html)[1]
+    executed = "10 A% = 3\nN20 G1 X9 F600\nN30 G1 X#\nN40 X20\nN50 M30\n"
+    assert "rest_tip" not in _content(view_program(executed, "mill3", "bosch").html)[1]

@@ -9,7 +9,7 @@ import polycnc
 from polycnc.runner import view_program
 from polycnc.runner.view import _film
 from polycnc.runner.view._film import Film, film_of
-from polycnc.stock import Cutting
+from polycnc.stock import Cutting, Stock, Tool
 
 PLATE = """(T1 D=10. CR=0. - flat end mill)
 (T3 D=6. CR=3. - ball end mill)
@@ -42,10 +42,11 @@ def _field(film: Film, until_s: float) -> np.ndarray:
 def test_the_last_picture_is_what_is_left() -> None:
     result = polycnc.run(PLATE, "vmc3", "fanuc", stock=STOCK, resolution_mm=0.25)
     assert result.machined is not None
-    film = film_of(result.machined)
+    film, left = film_of(result.machined), result.machined.stock
+    assert isinstance(left, Stock)
     assert film.cell_mm == 0.25
-    assert _field(film, np.inf) == pytest.approx(result.machined.stock.heights, abs=film.level_mm)
-    assert film.first_mm == pytest.approx((result.machined.stock.grid.x0, result.machined.stock.grid.y0))
+    assert _field(film, np.inf) == pytest.approx(left.heights, abs=film.level_mm)
+    assert film.first_mm == pytest.approx((left.grid.x0, left.grid.y0))
 
 
 @pytest.mark.parametrize("share", [0.31, 0.55, 0.8])
@@ -55,7 +56,8 @@ def test_at_any_time_it_is_what_was_cut_until_then(share: float) -> None:
     assert machined is not None
     film = film_of(machined)
     step = int(share * len(film.ends))
-    cutting = Cutting(machined.form.body(machined.course, machined.tools), machined.tools)
+    tools = {number: tool for number, tool in machined.tools.items() if isinstance(tool, Tool)}
+    cutting = Cutting(machined.form.body(machined.course, tools), tools)
     cutting.add(machined.course.at(np.flatnonzero(machined.course.t_s <= film.ends[step])))
     found = _field(film, film.ends[step])
     assert found == pytest.approx(cutting.stock.heights, abs=film.level_mm)
@@ -65,6 +67,7 @@ def test_a_large_field_is_shown_in_means_of_cells(monkeypatch: pytest.MonkeyPatc
     monkeypatch.setattr(_film, "MOST_ACROSS", 60)
     result = polycnc.run(PLATE, "vmc3", "fanuc", stock=STOCK, resolution_mm=0.25)
     assert result.machined is not None
+    assert isinstance(result.machined.stock, Stock)
     film, heights = film_of(result.machined), result.machined.stock.heights
     assert film.cell_mm == 1.0
     rows, columns = (size // 4 * 4 for size in heights.shape)

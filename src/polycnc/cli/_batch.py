@@ -30,6 +30,9 @@ def batch_command(
     sweep: options.Sweep = None,
     pattern: options.Pattern = None,
     root: options.Root = None,
+    stock: options.Stock = None,
+    fixture: options.Fixtures = None,
+    resolution: options.Resolution = None,
     timeout: options.Timeout = 600.0,
     memory: options.Memory = 4096.0,
     done: options.Done = None,
@@ -39,10 +42,7 @@ def batch_command(
     """Run or check many programs; one that is broken or hangs stops no other."""
     from polycnc.runner import batches
 
-    if cluster is not None and jobs is not None:
-        raise UsageError(
-            "--jobs and --cluster", hint="A cluster has as many workers as it has; leave --jobs out."
-        )
+    _check_workers(cluster, jobs)
     swept = _swept(sweep or ())
     inputs = [Path(each) for each in (machine, dialect) if each is not None]
     if output is not None or done is not None:
@@ -69,6 +69,9 @@ def batch_command(
                 client=client,
                 patterns=pattern or (),
                 root=root,
+                stock=stock,
+                fixtures=fixture or (),
+                resolution_mm=resolution,
                 timeout_s=timeout,
                 memory_mb=memory,
                 done=done,
@@ -77,6 +80,13 @@ def batch_command(
         )
         status = _finish(result, output, as_json=as_json)
     sys.exit(status)
+
+
+def _check_workers(cluster: str | None, jobs: int | None) -> None:
+    if cluster is not None and jobs is not None:
+        raise UsageError(
+            "--jobs and --cluster", hint="A cluster has as many workers as it has; leave --jobs out."
+        )
 
 
 def _done_beside(output: Path | None, done: Path | None, inputs: list[Path]) -> Path | None:

@@ -18,6 +18,13 @@ def calls_command(
     trace: Annotated[
         Path | None, typer.Option(help="Append every call to this file, as JSON.", metavar="FILE")
     ] = None,
+    replay: Annotated[
+        Path | None,
+        typer.Option(
+            help="Serve nobody: carry out the calls of a trace, and say which answer otherwise.",
+            metavar="FILE",
+        ),
+    ] = None,
     port: Annotated[int, typer.Option(help="Port to listen on, 0 for a free one.", min=0, max=65535)] = 8194,
     axes: Annotated[int, typer.Option(help="How many axes a FANUC control has.", min=1, max=6)] = 3,
     rate: Annotated[
@@ -41,7 +48,37 @@ def calls_command(
             raise UsageError(
                 f"{trace}: cannot be written: {error.strerror}", hint="Name another file."
             ) from None
+    if replay is not None:
+        _replay(kind, machine, axes, replay)
+        return
     file = str(machine) if machine is not None else ""
     plan = plan_of(Flags(file=None, kinds={kind: file}, doors=f"calls={port}", axes=axes, rate=rate))
     shared = tuple((row, replace(at, path=str(trace or ""))) for row, at in plan.shared)
     asyncio.run(serve_plan(replace(plan, shared=shared)))
+
+
+def _replay(kind: str, machine: Path | None, axes: int, trace: Path) -> None:
+    """Say which calls of a trace answer otherwise on a new machine; status 1 if any does."""
+    import sys
+
+    from polycnc.cli._errors import PROGRAM
+    from polycnc.cli._output import say
+    from polycnc.servers.calls import LIBRARIES, replay
+    from polycnc.servers.process import KINDS, Machinery
+
+    made = KINDS[kind](Machinery(file=machine, axes=axes))
+    served = LIBRARIES[kind]
+    library = served.load()
+    count = other = 0
+    try:
+        for each in replay(trace, made.device, lambda: served.make(library, [made.device], None)):
+            count += 1
+            if not each.is_equal:
+                other += 1
+                (was, wrote), (code, writes) = each.expected, each.came
+                say(f"line {each.line}: {each.call} was {was} {wrote}, is {code} {writes}")
+    finally:
+        made.end()
+    say(f"{count} calls, of which {other} answer otherwise")
+    if other:
+        sys.exit(PROGRAM)

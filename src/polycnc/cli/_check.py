@@ -41,6 +41,10 @@ def check_command(
     ignore: options.Ignore = None,
     root: options.Root = None,
     stock: options.Stock = None,
+    resolution: options.Resolution = None,
+    fixture: options.Fixtures = None,
+    target: options.Target = None,
+    tolerance: options.Tolerance = None,
     as_json: options.AsJson = False,
 ) -> None:
     """Report every error of part programs, each with its place and what to do, and remarks on the machining."""
@@ -59,7 +63,12 @@ def check_command(
             found.unreadable[str(program)] = error
             continue
         found.reports[text.name] = runner.inspect(
-            text, config, dialect, root=root, ignore=options.codes_of(ignore), stock=stock
+            text,
+            config,
+            dialect,
+            root=root,
+            ignore=options.codes_of(ignore),
+            **options.body_of(stock, resolution, fixture, target, tolerance),
         )
     if as_json:
         print_json(_as_dict(found, strict))

@@ -24,6 +24,12 @@ def clib_command(
         str | None, typer.Option(help="linux, win32, win64 or macos; absent: this computer.", metavar="NAME")
     ] = None,
     source_only: Annotated[bool, typer.Option(help="Write header and source, and build nothing.")] = False,
+    packing: Annotated[
+        int, typer.Option(help="To how many bytes the program packs structures; 0: as the manual has them.")
+    ] = 0,
+    in_process: Annotated[
+        bool, typer.Option(help="Have the machines in the program's own process (Linux, 64 bits).")
+    ] = False,
     missing: Annotated[
         Path | None,
         typer.Option(
@@ -32,18 +38,24 @@ def clib_command(
     ] = None,
 ) -> None:
     """Write header and source of a C library, and build it with gcc, clang or mingw-w64."""
+    from polycnc.errors import UsageError
     from polycnc.servers.calls import build_command, build_library, library_of, target_here, write_library
 
     library = library_of(kind)
     if missing is not None:
         _say_missing(missing, library)
         return
+    packed = library.packed(packing)
+    if packed is None:
+        known = ", ".join(map(str, sorted({0, *library.packings})))
+        raise UsageError(f"{library.name} is not packed to {packing} bytes", hint=f"There is {known}.")
+    library = packed
     wanted = target or target_here()
-    build_command(library, wanted)  # refuses a target that there is not
-    for path in write_library(library, folder):
+    build_command(library, wanted, in_process=in_process)  # refuses a target that there is not
+    for path in write_library(library, folder, in_process=in_process):
         say(str(path))
     if not source_only:
-        say(str(build_library(library, folder, wanted)))
+        say(str(build_library(library, folder, wanted, in_process=in_process)))
 
 
 def _say_missing(program: Path, library: CLibrary) -> None:

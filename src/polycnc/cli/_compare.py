@@ -34,7 +34,7 @@ def compare_command(
     tolerance: Annotated[
         float,
         typer.Option(
-            help="How far apart the paths may be, mm; more is exit status 1.", metavar="MM", min=0.0
+            help="How far apart the paths may be, mm; more is exit status 1.", metavar="MM", min=0.0, max=1e6
         ),
     ] = 0.01,
     as_json: options.AsJson = False,

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import errno
 import functools
+import math
 import os
 import platform
 import shlex
@@ -14,7 +15,7 @@ import signal
 import sys
 import tempfile
 import traceback
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from importlib.metadata import PackageNotFoundError, version
 from typing import NoReturn, ParamSpec
 
@@ -38,6 +39,7 @@ def guarded(command: Callable[P, None]) -> Callable[P, None]:
     @functools.wraps(command)
     def run(*args: P.args, **kwargs: P.kwargs) -> None:
         try:
+            _check_numbers(kwargs)
             command(*args, **kwargs)
             sys.stdout.flush()
         except UsageError as error:
@@ -57,6 +59,18 @@ def guarded(command: Callable[P, None]) -> Callable[P, None]:
             end_with_report(error)
 
     return run
+
+
+def _check_numbers(given: Mapping[str, object]) -> None:
+    """Refuse what is no number in an option of numbers: no bounds keep it out.
+
+    Raises:
+        UsageError: There is one.
+    """
+    for name, value in given.items():
+        if isinstance(value, float) and not math.isfinite(value):
+            option = f"--{name.replace('_', '-')}"
+            raise UsageError(f"{option} is {value}", hint=f"Give {option} a number.")
 
 
 def _reader_left(error: OSError) -> bool:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, TypedDict
 
 import typer
 
@@ -94,12 +94,30 @@ Stock = Annotated[
         metavar="auto|FORM|FILE",
     ),
 ]
+Fixtures = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--fixture",
+        help="What tools must not touch: box=X0,Y0,Z0,X1,Y1,Z1 (as for --stock) or an STL file; may be repeated.",
+        metavar="BOX|FILE",
+    ),
+]
+Target = Annotated[
+    str | None,
+    typer.Option(help="What is to come out: an STL file, as the stock lies.", metavar="FILE"),
+]
+Tolerance = Annotated[
+    float | None,
+    typer.Option(help="How far the part may differ from the target (0.02 mm).", metavar="MM"),
+]
 Resolution = Annotated[
     float | None,
-    typer.Option(help="Width of a cell of the stock (mm; default: by its size).", metavar="MM"),
+    typer.Option(
+        help="Width of a cell of the stock (mm; default: by its size).", metavar="MM", min=1e-6, max=1e6
+    ),
 ]
 SaveStock = Annotated[
-    Path | None, typer.Option(help="Write what is left of the stock to an .stl file.", metavar="FILE")
+    Path | None, typer.Option(help="Write what is left of the stock to an .stl or .3mf file.", metavar="FILE")
 ]
 SaveParameters = Annotated[
     Path | None,
@@ -113,6 +131,8 @@ LoopLimit = Annotated[
     typer.Option(
         help="How long a CPL loop may go round without a block or a WAIT (10 s of the machine's time).",
         metavar="S",
+        min=0.0,
+        max=1e9,
     ),
 ]
 Strict = Annotated[bool, typer.Option("--strict", help="Let remarks on the machining be errors.")]
@@ -140,7 +160,9 @@ Paths = Annotated[list[Path], typer.Argument(help="Programs, and folders of them
 CheckOnly = Annotated[bool, typer.Option("--check", help="Report errors only; run nothing.")]
 Jobs = Annotated[
     int | None,
-    typer.Option("--jobs", "-j", help="Processes (default: one for each core).", metavar="N", min=1),
+    typer.Option(
+        "--jobs", "-j", help="Processes (default: one for each core).", metavar="N", min=1, max=4096
+    ),
 ]
 Cluster = Annotated[
     str | None,
@@ -162,10 +184,10 @@ Pattern = Annotated[
     typer.Option(help="Programs of a folder, like '*.txt' (default: the usual endings).", metavar="GLOB"),
 ]
 Timeout = Annotated[
-    float, typer.Option(help="Seconds that one program may take; 0: any.", metavar="S", min=0.0)
+    float, typer.Option(help="Seconds that one program may take; 0: any.", metavar="S", min=0.0, max=1e9)
 ]
 Memory = Annotated[
-    float, typer.Option(help="Memory that one program may take, MB; 0: any.", metavar="MB", min=0.0)
+    float, typer.Option(help="Memory that one program may take, MB; 0: any.", metavar="MB", min=0.0, max=1e9)
 ]
 Done = Annotated[
     Path | None,
@@ -232,6 +254,33 @@ PostAsJson = Annotated[
 ShowControl = Annotated[
     bool, typer.Option("--show-control", help="Print the control file, to start one's own from.")
 ]
+
+
+class Body(TypedDict):
+    """What is cut, as settings of a run have it."""
+
+    stock: str | None
+    resolution_mm: float | None
+    fixtures: tuple[str, ...]
+    target: str | None
+    tolerance_mm: float | None
+
+
+def body_of(
+    stock: str | None,
+    resolution: float | None,
+    fixtures: list[str] | None,
+    target: str | None,
+    tolerance: float | None,
+) -> Body:
+    """Return what the options say of stock."""
+    return Body(
+        stock=stock,
+        resolution_mm=resolution,
+        fixtures=tuple(fixtures or ()),
+        target=target,
+        tolerance_mm=tolerance,
+    )
 
 
 def codes_of(texts: list[str] | None) -> tuple[str, ...]:

@@ -73,6 +73,9 @@ def run_command(
     screen: options.Screen = None,
     loop_limit: options.LoopLimit = None,
     stock: options.Stock = None,
+    fixture: options.Fixtures = None,
+    target: options.Target = None,
+    tolerance: options.Tolerance = None,
     resolution: options.Resolution = None,
     save_stock: options.SaveStock = None,
     save_parameters: options.SaveParameters = None,
@@ -81,14 +84,14 @@ def run_command(
     from polycnc import runner
     from polycnc.machine import load_machine
 
-    if save_stock is not None:
-        check_stock_file(save_stock, stock)
+    check_stock_file(save_stock, stock)
     outputs = _Outputs(trace, plot, screen, save_stock, save_parameters)
-    outputs.check(programs, (*programs, machine, dialect, keys, stock if stock != "auto" else None))
+    body = options.body_of(stock, resolution, fixture, target, tolerance)
+    read = (stock if stock != "auto" else None, target, *body["fixtures"])
+    outputs.check(programs, (*programs, machine, dialect, keys, *read))
     texts = [read_program(program) for program in programs]
     config = load_machine(machine)
-    if servo:
-        _say_if_ideal(config)
+    _say_if_ideal(config, servo)
     settings = runner.RunSettings(
         config,
         dialect,
@@ -100,9 +103,8 @@ def run_command(
         screen=screen,
         ignore=options.codes_of(ignore),
         loop_limit_s=runner.LOOP_LIMIT_S if loop_limit is None else loop_limit,
-        stock=stock,
-        resolution_mm=resolution,
         save_parameters=save_parameters,
+        **body,
     )
     results = []
     for text in texts:
@@ -137,21 +139,24 @@ def _run(text: ProgramText, config: MachineConfig, settings: RunSettings, output
             names = tuple((axis.name, axis.unit) for axis in config.axes)
             runner.plot_track(result, names, picture.track(picture.execution()), outputs.plot)
         if outputs.stock is not None and result.stock is not None:
-            result.stock.mesh().write_stl(outputs.stock)
+            result.stock.mesh().write(outputs.stock)
     return result
 
 
-def check_stock_file(path: Path, stock: str | None) -> None:
+def check_stock_file(path: Path | None, stock: str | None) -> None:
     """Check that what is left of the stock can be written where it should.
 
     Raises:
-        UsageError: nothing is cut, or no .stl file.
+        UsageError: nothing is cut, or no .stl or .3mf file.
     """
     from polycnc.outputs import check_output
+    from polycnc.stock import MESH_FORMATS
 
+    if path is None:
+        return
     if stock is None:
         raise UsageError("there is no stock to save", hint="Say what is cut: --stock auto.")
-    check_output(path, (".stl",), "stock")
+    check_output(path, MESH_FORMATS, "stock")
 
 
 def _say_total(results: Sequence[RunResult]) -> None:
@@ -179,8 +184,8 @@ def _all_as_dict(results: list[RunResult]) -> dict[str, Any]:
     }
 
 
-def _say_if_ideal(config: MachineConfig) -> None:
-    if all(axis.servo.kind == "ideal" for axis in config.axes):
+def _say_if_ideal(config: MachineConfig, servo: bool) -> None:
+    if servo and all(axis.servo.kind == "ideal" for axis in config.axes):
         say_error(
             f"--servo changes nothing: {config.name} has ideal servos; a machine file can say otherwise."
         )

@@ -32,7 +32,9 @@ def compile_command(
             "-o", "--out", help="The file to write (default: FILE with the ending .CNC).", metavar="OUT"
         ),
     ] = None,
-    task: Annotated[int, typer.Option("--task", help="The task that runs it, 0 to 3.", metavar="N")] = 0,
+    task: Annotated[
+        int, typer.Option("--task", help="The task that runs it, 0 to 3.", metavar="N", min=0, max=3)
+    ] = 0,
 ) -> None:
     """Compile a stand-alone program to a .CNC file, or report every error of it."""
     from polycnc.controllers.apci import sap

@@ -89,6 +89,10 @@ def print_summary(result: RunResult, units: Units = Units.MM) -> None:
     if result.machined is not None:
         removed, left = result.removed_mm3 / 1000.0, result.machined.stock.volume_mm3 / 1000.0
         say(f"removed    {removed:,.3f} cm3 of {removed + left:,.3f} cm3")
+        if result.machined.idle_s:
+            say(f"  idle     {time_text(result.machined.idle_s)} of feed removed nothing")
+        if result.machined.comparison is not None:
+            say(f"  target   {result.machined.comparison}")
     _print_messages(result)
     for collision in result.collisions:
         place = "" if collision.position is None else f"{collision.position}: "

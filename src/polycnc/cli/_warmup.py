@@ -25,6 +25,27 @@ G91 G1 X1.5
 X-1.5 Y0.5
 G90 G0 Z1
 """
+_PLATE = """(T1 D=10. CR=0. - flat end mill)
+T1 M6
+S5000 M3
+G17 G90 G54 G0 X1 Y2
+G1 Z-2 F600
+X20 Y3
+M30
+"""
+_TURNED = """(T1 D=4. - flat end mill)
+T1 M6
+S500 M3
+G1 A5 Z8 F300
+M30
+"""
+_SHAFT = """(T1 CNMG120408)
+T1 M6
+S500 M4
+G18 G90 G0 X8 Z2
+G1 Z-7 F300
+M30
+"""
 
 
 def _warm_run(progress: Progress) -> None:
@@ -68,7 +89,28 @@ def _warm_post(progress: Progress) -> None:
     compile_entries("polycnc.post", [], progress)
 
 
-_JOBS = {"run": _warm_run, "post": _warm_post, "apci": _warm_apci, "imc": _warm_imc}
+def _warm_stock(progress: Progress) -> None:
+    from pathlib import Path
+    from tempfile import TemporaryDirectory
+
+    from polycnc import runner
+
+    with TemporaryDirectory() as folder:
+        part = Path(folder, "part.stl")
+        progress("a plate", 0.3)
+        done = runner.run(_PLATE, dialect="fanuc", check=False, stock="auto", resolution_mm=1.0)
+        if done.stock is not None:
+            done.stock.mesh().write_stl(part)
+        progress("a body from a file", 0.6)
+        body = str(part)
+        runner.run(_PLATE, dialect="fanuc", check=False, stock=body, resolution_mm=1.0, target=body)
+    progress("a table that turns", 0.7)
+    runner.run(_TURNED, "mill5", "din", check=False, stock="box=-9,-9,-9,9,9,9", resolution_mm=1.0)
+    progress("a shaft", 0.8)
+    runner.run(_SHAFT, "lathe2", "din", check=False, stock="cylinder=20,-9,0", resolution_mm=1.0)
+
+
+_JOBS = {"run": _warm_run, "stock": _warm_stock, "post": _warm_post, "apci": _warm_apci, "imc": _warm_imc}
 
 
 @contextmanager
@@ -88,7 +130,8 @@ def warmup_command(
     job: Annotated[
         str,
         typer.Argument(
-            help="run (part programs), post (long tool paths), apci, imc or all.", metavar="[JOB]"
+            help="run (part programs), stock (what they cut), post (long tool paths), apci, imc or all.",
+            metavar="[JOB]",
         ),
     ] = "all",
 ) -> None:

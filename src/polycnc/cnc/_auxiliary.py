@@ -103,7 +103,7 @@ class AuxiliaryFunctions:
         del self.requests[channel.path]
         self._clock.changes += 1
         if channel.run is not None:
-            channel.run.answered()
+            channel.run.events.answered()
         return True
 
     def note_failures(self, alarms: AlarmList) -> None:

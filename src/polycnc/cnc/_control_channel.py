@@ -79,7 +79,7 @@ class ControlChannel:
     @property
     def executed(self) -> BlockRecord | None:
         """The block that is executed, or was last."""
-        return None if self.run is None else self.run.executed
+        return None if self.run is None else self.run.reading.block
 
     @property
     def next_block(self) -> BlockRecord | None:
@@ -92,7 +92,7 @@ class ControlChannel:
         if self.run is None or not (self.active or self.interrupted or self.broken):
             return frozenset()
         names = {self.run.program.name}
-        if (block := self.run.executed) is not None:
+        if (block := self.run.reading.block) is not None:
             names |= {block.program, *(call.program for call in block.stack)}
         return frozenset(names)
 
@@ -150,9 +150,9 @@ class ControlChannel:
         self.own_axes.taken = None
         self.set_switches(self.switches)
         self.set_overrides(self.overrides)
-        self.run.breakpoints = self.breakpoints
-        self.run.skip_signal = self.skip_signal
-        self.run.on_skip = self.on_skip
+        self.run.switches.breakpoints = self.breakpoints
+        self.run.switches.skip_signal = self.skip_signal
+        self.run.events.on_skip = self.on_skip
         self._go(step)
 
     def _has_found(self, text: ProgramText, search: Search | None) -> bool:
@@ -166,7 +166,7 @@ class ControlChannel:
             self.runs.stale = False
             self.run = self.runs.make(text)
         else:
-            self.run.load(text, keeps_modal=mdi)
+            self.run.selection.load(text, keeps_modal=mdi)
         return self.run
 
     def go_on(self, after_manual: AfterManual, step: Step) -> None:
@@ -244,13 +244,13 @@ class ControlChannel:
         """Give the signal that ends skip moves, or take it away."""
         self.skip_signal = on
         if self.run is not None:
-            self.run.skip_signal = on
+            self.run.switches.skip_signal = on
 
     def set_breakpoints(self, breakpoints: frozenset[Breakpoint]) -> None:
         """Set where the program stops besides."""
         self.breakpoints = breakpoints
         if self.run is not None:
-            self.run.breakpoints = breakpoints
+            self.run.switches.breakpoints = breakpoints
 
     def change_config(self, config: MachineConfig, dialect: Dialect) -> None:
         """Let programs that begin from now on keep other limits, and be read in this dialect."""
@@ -270,18 +270,21 @@ class ControlChannel:
         self.switches = switches
         self._clock.changes += 1
         if self.run is not None:
-            self.run.single_block, self.run.optional_stop = switches.single_block, switches.optional_stop
-            self.run.dry_run = switches.dry_run
-            self.run.machine_lock = switches.machine_lock
-            self.run.block_delete = switches.block_delete
+            self.run.switches.single_block, self.run.switches.optional_stop = (
+                switches.single_block,
+                switches.optional_stop,
+            )
+            self.run.overrides.dry_run = switches.dry_run
+            self.run.switches.machine_lock = switches.machine_lock
+            self.run.switches.block_delete = switches.block_delete
 
     def set_overrides(self, overrides: Overrides) -> None:
         """Take over the overrides."""
         self.overrides = overrides
         self._clock.changes += 1
         if self.run is not None:
-            self.run.feed_override = overrides.feed
-            self.run.rapid_override = overrides.rapid
+            self.run.overrides.feed = overrides.feed
+            self.run.overrides.rapid = overrides.rapid
 
     def check_rest(self) -> None:
         """Refuse while the axes brake.
@@ -294,7 +297,7 @@ class ControlChannel:
 
     def _take_back(self, step: Step) -> None:
         """Take lent axes back, which are where they were, and go on."""
-        self.own_axes.take_back(locked=self.run is not None and self.run.machine_lock)
+        self.own_axes.take_back(locked=self.run is not None and self.run.switches.machine_lock)
         self._go(step)
 
     def _go(self, step: Step) -> None:

@@ -76,7 +76,7 @@ def _restore_channel(channel: ControlChannel, moment: ChannelMoment, run: Progra
     channel.run = run
     if run is not None:
         channel.runs.stale = False
-        run.on_skip = channel.on_skip
+        run.events.on_skip = channel.on_skip
         run.stopper.breakpoints = channel.breakpoints
 
 

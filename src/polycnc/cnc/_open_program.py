@@ -64,7 +64,7 @@ class OpenProgram:
     def queued(self) -> int:
         """How many lines wait and how many moves are queued that have not been executed."""
         run = self._run
-        return 0 if run is None else self._text.waiting + run.queued
+        return 0 if run is None else self._text.waiting + run.reading.queued
 
     def modal_ahead(self) -> ModalWords:
         """Return the modal words in force after all that has been fed, as far as that is known.
@@ -169,5 +169,5 @@ class OpenProgram:
         return check
 
     def _has_come(self, run: ProgramRun) -> None:
-        run.has_come()
+        run.feed.wake()
         self._clock.changes += 1

@@ -27,9 +27,9 @@ def prepared_block(machine: Machine, run: ProgramRun) -> BlockRecord | None:
     """Return the block that was prepared last of those whose motion is queued; the executed one where none is."""
     row = machine.state.paths.row[run.path]
     if row["tail"] <= row["head"]:
-        return run.executed
+        return run.reading.block
     last = int(row["base"]) + (int(row["tail"]) - 1) % int(row["capacity"])
-    return run.channel.records.block(int(machine.state.seg.row[last]["tag"])) or run.executed
+    return run.channel.records.block(int(machine.state.seg.row[last]["tag"])) or run.reading.block
 
 
 def find_block(run: ProgramRun, search: Search) -> int:
@@ -39,7 +39,7 @@ def find_block(run: ProgramRun, search: Search) -> int:
         ControlError: There is none, or the program cannot begin there.
     """
     try:
-        return run.search(
+        return run.selection.search(
             line=search.line, sequence=search.sequence, calculate=search.calculate, last=search.last
         )
     except UsageError as error:

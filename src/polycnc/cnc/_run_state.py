@@ -20,10 +20,14 @@ class RunState(StrEnum):
     ALARM = "alarm"
 
 
-INTERRUPTED = frozenset(
-    {RunState.HOLD, RunState.STOPPED_AT_BLOCK, RunState.PROGRAM_STOP, RunState.OPTIONAL_STOP}
-)
+STANDING = frozenset({RunState.STOPPED_AT_BLOCK, RunState.PROGRAM_STOP, RunState.OPTIONAL_STOP})
+"""States in which a program stands between blocks and can go on."""
+INTERRUPTED = STANDING | {RunState.HOLD}
 """States in which a program stands and can go on."""
+GOING = frozenset({RunState.ACTIVE, RunState.HOLD})
+"""States in which a program is being executed."""
+OVER = frozenset({RunState.READY, RunState.RESET, RunState.COMPLETED, RunState.ALARM})
+"""States in which no program is under way."""
 
 
 @dataclass(frozen=True, slots=True)

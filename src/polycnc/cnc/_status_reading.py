@@ -148,7 +148,7 @@ class StatusReader:
         """Return what positions of programs show where a machine lock lets paths run without their axes."""
         state, shown = self._of.machine.state, None
         for channel in self._of.channels:
-            if channel.run is None or not channel.run.machine_lock:
+            if channel.run is None or not channel.run.switches.machine_lock:
                 continue
             shown = shown or list(actual)
             for column, axis in enumerate(state.paths.axis[channel.path]):
@@ -166,7 +166,7 @@ class StatusReader:
                 continue
             block = self._blocks[channel.path].read()
             own_zero = zero if block is None else block.modal.zero
-            left: list[float] = run.to_go.tolist()
+            left: list[float] = run.reading.to_go.tolist()
             if len(self._of.channels) == 1:
                 return list(own_zero), left[:count]
             for index, name in enumerate(self._names):
@@ -259,7 +259,7 @@ class _BlockPart:
             return self._block
         self.fresh = True
         run, of = self._of_channel.run, self._of
-        block = None if run is None else run.executed
+        block = None if run is None else run.reading.block
         tables = of.tools.revision, of.offsets.revision, of.dialect
         if block is not self._block or tables != self._tables:
             self._block, self._tables = block, tables

@@ -80,6 +80,7 @@ from polycnc.kernel._segments import (
     set_circle3d,
     set_line,
 )
+from polycnc.kernel._segments import WAIT_S as GEO_WAIT_S
 from polycnc.kernel._servo import IDEAL, PIDF
 from polycnc.kernel._state import (
     FOLLOWING_ERROR,
@@ -110,6 +111,7 @@ __all__ = [
     "FEED_MM_S",
     "FEED_S",
     "FOLLOWING_ERROR",
+    "GEO_WAIT_S",
     "HELD",
     "IDEAL",
     "IDLE",

@@ -9,6 +9,7 @@ import math
 
 from polycnc.kernel._bezier import bezier_point, bezier_tangent
 from polycnc.kernel._circle3d import circle3d_point, circle3d_tangent
+from polycnc.kernel._cubic import cubic_slope, cubic_way
 from polycnc.kernel._jit import compiled
 from polycnc.kernel._segments import (
     ARC,
@@ -16,6 +17,7 @@ from polycnc.kernel._segments import (
     CENTER_Q,
     CIRCLE3D,
     LINE,
+    OVERLAP,
     RADIUS_END,
     RADIUS_START,
     SPLINE,
@@ -46,6 +48,10 @@ def segment_point(seg: Segments, k: int, s: float, out: Floats) -> None:
         start_p, start_q = seg.start[k, p], seg.start[k, q]
         way_p, way_q = bezier_point(seg.geo[k], seg.end[k, p] - start_p, seg.end[k, q] - start_q, fraction)
         out[p], out[q] = start_p + way_p, start_q + way_q
+    if kind == OVERLAP:
+        for j in range(3):
+            i = seg.plane[k, j]
+            out[i] = seg.start[k, i] + cubic_way(seg.geo[k], j, seg.end[k, i] - seg.start[k, i], fraction)
     if kind in (ARC, CIRCLE3D):
         three = seg.geo[k, WORK_POINT:]
         if kind == ARC:
@@ -78,7 +84,7 @@ def _arc_point(seg: Segments, k: int, fraction: float, out: Floats) -> None:
 
 @compiled
 def segment_coordinate(seg: Segments, k: int, i: int, s: float) -> float:
-    """Return coordinate `i` of segment `k` (not a spline) at path length `s`, which may lie beyond its ends."""
+    """Return coordinate `i` of segment `k` (no free curve) at path length `s`, which may lie beyond its ends."""
     row = seg.row[k]
     start, end = seg.start[k, i], seg.end[k, i]
     if s == row["length"] or row["length"] <= 0.0:
@@ -99,7 +105,7 @@ def segment_coordinate(seg: Segments, k: int, i: int, s: float) -> float:
 
 @compiled
 def segment_slope(seg: Segments, k: int, i: int, s: float) -> float:
-    """Return d(coordinate `i`)/ds of segment `k` (not a spline) at path length `s`, which may lie beyond its ends."""
+    """Return d(coordinate `i`)/ds of segment `k` (no free curve) at path length `s`, which may lie beyond its ends."""
     row = seg.row[k]
     length = row["length"]
     if length <= 0.0:
@@ -144,6 +150,10 @@ def segment_tangent(seg: Segments, k: int, at: float, out: Floats) -> None:
         p, q = seg.plane[k, 0], seg.plane[k, 1]
         way_p, way_q = seg.end[k, p] - seg.start[k, p], seg.end[k, q] - seg.start[k, q]
         out[p], out[q] = bezier_tangent(seg.geo[k], way_p, way_q, at)
+    elif kind == OVERLAP:
+        for j in range(3):
+            i = seg.plane[k, j]
+            out[i] = cubic_slope(seg.geo[k], j, seg.end[k, i] - seg.start[k, i], at) / length
     elif kind == CIRCLE3D:
         three = seg.geo[k, WORK_POINT:]
         circle3d_tangent(seg.geo[k], at, three)
@@ -163,7 +173,7 @@ def grow_extents(seg: Segments, k: int, low: Floats, high: Floats, work: Floats)
     kind = seg.row[k]["kind"]
     if kind == ARC:
         _grow_by_quadrants(seg, k, low, high)
-    elif kind in (SPLINE, CIRCLE3D):
+    elif kind in (SPLINE, CIRCLE3D, OVERLAP):
         for step in range(1, 64):
             segment_point(seg, k, seg.row[k]["length"] * step / 64.0, work)
             for i in range(low.shape[0]):

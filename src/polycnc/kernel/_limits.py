@@ -21,6 +21,7 @@ from polycnc.kernel._axis_limits import AxisLimits
 from polycnc.kernel._bezier import BEND_BOUND, TANGENT_BOUND
 from polycnc.kernel._circle3d import circle3d_tangent_bound
 from polycnc.kernel._corner_rules import AS_AXES_ALLOW, BY_SHARE, corner_speed, step_share, turns
+from polycnc.kernel._cubic import cubic_bounds
 from polycnc.kernel._geometry import is_curved, segment_tangent
 from polycnc.kernel._jit import compiled
 from polycnc.kernel._path import HELD, RUNNING
@@ -32,6 +33,8 @@ from polycnc.kernel._segments import (
     CORNER_STOP,
     LAST,
     LINE,
+    OVERLAP,
+    OVERLAPS,
     RADIUS_END,
     RADIUS_START,
     RAPID,
@@ -49,6 +52,8 @@ CURVE_CORNER_SHARE = 0.05  # the same beside a curve, which needs the rest for i
 CURVE_SHARE = 1.0 - CURVE_CORNER_SHARE
 CENTRIPETAL_SHARE = math.sqrt(0.75)  # highest part that the curvature of an arc may use
 SPLINE_CENTRIPETAL_SHARE = 0.45
+OVERLAP_BEND_SHARE = 0.9  # of an axis' acceleration may be what an OVERLAP changes its speed by
+OVERLAP_SHARE = 0.5  # of its acceleration has a segment that overlaps with another
 CORNER_MARGIN = 1.125  # the most that corners closer than a cycle can add up to unevenly
 LARGEST_BEND = 0.005  # rad; more is a corner, where an exact path comes to rest
 STRAIGHT = 1e-13  # a smaller change of direction is rounding
@@ -97,14 +102,23 @@ def limit_segment(seg: Segments, k: int, limits: AxisLimits, path: np.void, work
 
     `work` is scratch, [3, n].
     """
+    cap, accel = segment_limits(seg, k, limits, path, work[0], work[1])
+    seg.row[k]["cap"] = cap
+    seg.row[k]["full_accel"] = accel
+
+
+@compiled
+def segment_limits(
+    seg: Segments, k: int, limits: AxisLimits, path: np.void, tangent: Floats, bend: Floats
+) -> tuple[float, float]:
+    """Return the speed of segment `k` and the acceleration along it that every axis allows; two rows are scratch."""
     row = seg.row[k]
     kind = row["kind"]
     cap = feed_in_force(row, path)
     accel = math.inf
     if kind == WAIT:
-        cap = 0.0
-        accel = 1.0
-    elif kind == LINE:
+        return 0.0, 1.0
+    if kind == LINE:
         for i in range(limits.speed.shape[0]):
             part = abs(seg.end[k, i] - seg.start[k, i]) / row["length"]
             if part > 0.0:
@@ -113,48 +127,62 @@ def limit_segment(seg: Segments, k: int, limits: AxisLimits, path: np.void, work
         accel = min(accel, path["accel_limit_mm_s2"])
         if path["rounding_share"] > 0.0 and row["flags"] & ROUNDING:
             accel *= path["rounding_share"]
+        if row["flags"] & OVERLAPS:
+            accel *= OVERLAP_SHARE
         cap = min(cap, path["speed_limit_mm_s"])
-        if row["flags"] & RAPID:
-            cap = overridden_rapid(cap, path)
     else:
-        cap, accel = _limit_curve(seg, k, limits, path, cap, work)
-        if row["flags"] & RAPID:
-            cap = overridden_rapid(cap, path)
-    row["cap"] = cap
-    row["full_accel"] = accel
+        cap, accel = _limit_curve(seg, k, limits, path, cap, tangent, bend)
+    if row["flags"] & RAPID:
+        cap = overridden_rapid(cap, path)
+    return cap, accel
 
 
 @compiled
 def _limit_curve(
-    seg: Segments, k: int, limits: AxisLimits, path: np.void, asked_mm_s: float, work: Floats
+    seg: Segments,
+    k: int,
+    limits: AxisLimits,
+    path: np.void,
+    asked_mm_s: float,
+    tangent: Floats,
+    bend: Floats,
 ) -> tuple[float, float]:
     """Return speed cap and tangential acceleration on a curve from per-axis bounds of tangent and curvature."""
-    tangent, bend = work[0], work[1]
     _curve_bounds(seg, k, tangent, bend)
-    is_spline = seg.row[k]["kind"] == SPLINE
-    bend_share = SPLINE_CENTRIPETAL_SHARE if is_spline else CENTRIPETAL_SHARE
+    is_sum = adds_up(seg.row[k])
+    bend_share = CENTRIPETAL_SHARE
+    if is_sum:
+        bend_share = OVERLAP_BEND_SHARE if seg.row[k]["kind"] == OVERLAP else SPLINE_CENTRIPETAL_SHARE
     whole = path["accel_limit_mm_s2"]
+    # What overlaps with a neighbour has its part of the axes for ramps and turning.
+    own = OVERLAP_SHARE if seg.row[k]["flags"] & OVERLAPS and not is_sum else 1.0
     most = math.inf
     for i in range(tangent.shape[0]):
         if tangent[i] > 0.0:
             most = min(most, limits.speed[i] / tangent[i])
         if bend[i] > 0.0:
-            most = min(most, math.sqrt(bend_share * min(limits.acceleration[i], whole) / bend[i]))
+            most = min(most, math.sqrt(bend_share * own * min(limits.acceleration[i], whole) / bend[i]))
     cap = min(asked_mm_s, path["speed_limit_mm_s"], most)
     # With BY_SHARE the lines beside a corner do without what it takes, and an arc has nothing put aside for it.
     # What an arc needs to turn counts as if it were traversed with all that its axes allow, whatever the feed.
-    by_share = path["corner_rule"] == BY_SHARE and not is_spline
+    by_share = path["corner_rule"] == BY_SHARE and not is_sum
     share = 1.0 if by_share else CURVE_SHARE
     turning = most if by_share else cap
     rounds = path["rounding_share"] > 0.0 and seg.row[k]["flags"] & ROUNDING != 0
-    accel = share * whole
+    accel = share * own * whole
     for i in range(tangent.shape[0]):
         if tangent[i] > 0.0:
-            allowed = min(limits.acceleration[i], whole)
+            allowed = own * min(limits.acceleration[i], whole)
             used = turning * turning * bend[i] / allowed if bend[i] > 0.0 else 0.0
-            left = share - used if is_spline else math.sqrt(share * share - used * used)
+            left = share - used if is_sum else math.sqrt(share * share - used * used)
             accel = min(accel, (path["rounding_share"] if rounds else left) * allowed / tangent[i])
     return cap, accel
+
+
+@compiled
+def adds_up(row: np.void) -> bool:
+    """Tell whether turning and ramps of a segment may need an axis at once, not a quarter turn apart as on circles."""
+    return bool(row["kind"] == SPLINE or row["kind"] == OVERLAP)
 
 
 @compiled
@@ -184,6 +212,10 @@ def _curve_bounds(seg: Segments, k: int, tangent: Floats, bend: Floats) -> None:
         for j in range(3):
             tangent[seg.plane[k, j]] = three[j]
             bend[seg.plane[k, j]] = three[j] / geo[CIRCLE3D_RADIUS]
+    elif kind == OVERLAP:
+        for j in range(3):
+            i = seg.plane[k, j]
+            tangent[i], bend[i] = cubic_bounds(geo, j, seg.end[k, i] - seg.start[k, i], row["length"])
 
 
 @compiled
@@ -403,7 +435,7 @@ def _held(seg: Segments, k: int, limits: AxisLimits, work: Floats, kept: float) 
         if work[0, i] > 0.0:
             turning = row["cap"] * row["cap"] * work[1, i] / limits.acceleration[i]
             ramp = (1.0 - kept) * row["full_accel"] * work[0, i] / limits.acceleration[i]
-            used = turning + ramp if row["kind"] == SPLINE else math.sqrt(turning * turning + ramp * ramp)
+            used = turning + ramp if adds_up(row) else math.sqrt(turning * turning + ramp * ramp)
             held = min(held, 1.0 - used)
     return max(held, 0.0)
 
@@ -424,7 +456,7 @@ def _kept_on_curve(seg: Segments, k: int, limits: AxisLimits, work: Floats, step
             turning = row["cap"] * row["cap"] * work[1, i] / limits.acceleration[i]
             ramp = row["full_accel"] * work[0, i] / limits.acceleration[i]
             left = max(0.0, 1.0 - step - turning)
-            if row["kind"] != SPLINE:
+            if not adds_up(row):
                 left = math.sqrt(left * (1.0 - step + turning))
             kept = max(kept, 1.0 - left / ramp)
     return min(kept, 1.0 - LEAST_ON_CURVE)

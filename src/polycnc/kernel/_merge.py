@@ -11,7 +11,8 @@ from polycnc.kernel._axis_limits import AxisLimits
 from polycnc.kernel._blend import blend_corner, counting_axes
 from polycnc.kernel._jit import compiled, entry
 from polycnc.kernel._lines import add_line
-from polycnc.kernel._path import BLEND_COLUMNS, MOST_MERGED, Paths, slot
+from polycnc.kernel._overlap import overlap_corner
+from polycnc.kernel._path import BLEND_COLUMNS, MOST_MERGED, SCRATCH_POINTS, Paths, slot
 from polycnc.kernel._segments import RAPID, STOP, Floats, Segments, set_line
 
 NOT_MERGED = -1
@@ -104,7 +105,7 @@ def close_line(seg: Segments, paths: Paths, g: int, limits: AxisLimits) -> None:
     k = slot(paths, g, row["tail"] - 1)
     line = seg.row[k]
     speed, flags, tag = line["feed_mm_s"], int(line["flags"]), int(line["tag"])
-    end = paths.blend[g, BLEND_COLUMNS + 3 * MOST_MERGED :]
+    end = paths.blend[g, SCRATCH_POINTS : SCRATCH_POINTS + seg.end.shape[1]]
     for i in range(end.shape[0]):
         end[i] = seg.end[k, i]
         paths.queued[g, i] = seg.start[k, i]
@@ -113,6 +114,7 @@ def close_line(seg: Segments, paths: Paths, g: int, limits: AxisLimits) -> None:
     add_line(
         seg.row, seg.start, seg.end, paths.row, paths.queued, g, limits.feed_axis, end, speed, flags, tag
     )
+    overlap_corner(seg, paths, g, limits)
 
 
 @entry
@@ -141,4 +143,6 @@ def append_line(
     )
     if merges and added:
         _open_line(seg, paths, g, limits)
+    elif added:
+        overlap_corner(seg, paths, g, limits)
     return bool(added)

@@ -34,6 +34,9 @@ NO_LIMIT = 1 << 62
 EXACT_PATH = -1.0  # a tolerance: corners are stops, and the path goes on where there is none
 BLEND_COLUMNS = 17  # see `_blend`
 MOST_MERGED = 101  # points that one line takes the place of
+SCRATCH_POINTS = (
+    BLEND_COLUMNS + 3 * MOST_MERGED
+)  # column of `blend` from which there is room for three points
 
 # Columns of `totals`.
 RAPID_S, FEED_S, WAIT_S, RAPID_LENGTH, FEED_LENGTH, SEGMENTS, TOP_SPEED = 0, 1, 2, 3, 4, 5, 6
@@ -121,7 +124,7 @@ class Paths(NamedTuple):
     totals: Floats  # [G, TOTALS] of the segments traversed so far
     position: Floats  # [G, m] now
     queued: Floats  # [G, m] end of the last segment appended
-    blend: Floats  # [G, BLEND_COLUMNS + 3 MOST_MERGED + m] scratch of `_blend`, points merged, a point of scratch
+    blend: Floats  # [G, BLEND_COLUMNS + 3 MOST_MERGED + 3m] scratch of `_blend`, points merged, 3 points of scratch
     passed: Floats  # [G, MOST_PASSED, PASSED_COLUMNS] events that were passed, in their order
     axis: Ints  # [G, m] machine axis of each coordinate, -1 none
 
@@ -146,7 +149,7 @@ def make_paths(paths: int, slots: int, coordinates: int) -> Paths:
         totals=np.zeros((paths, TOTALS)),
         position=np.zeros((paths, coordinates)),
         queued=np.zeros((paths, coordinates)),
-        blend=np.zeros((paths, BLEND_COLUMNS + 3 * MOST_MERGED + coordinates)),
+        blend=np.zeros((paths, SCRATCH_POINTS + 3 * coordinates)),
         passed=np.zeros((paths, MOST_PASSED, PASSED_COLUMNS)),
         axis=np.tile(np.arange(coordinates, dtype=np.int64), (paths, 1)),
     )

@@ -24,12 +24,14 @@ ARC = 1  # circle in two axes; every other axis moves linearly with the angle (h
 CIRCLE3D = 2
 SPLINE = 3  # curve in two axes; no other axis moves
 WAIT = 4  # no motion: a dwell, or an event at a point of the path
+OVERLAP = 5  # a motion that begins while the one before it ends, see `_overlap`
 
 RAPID = 1  # flag: positioning at the axes' speed
 STOP = 2  # flag: come to rest at the end (exact stop)
 CORNER_STOP = 8  # flag: come to rest at the end unless the next segment goes on in the same direction
 LAST = 16  # flag: rounded corners lie before it and the path rests at its end, with nothing after
 ROUNDING = 32  # flag: an arc that rounds a corner
+OVERLAPS = 64  # flag: at an end of it is an OVERLAP
 TURN = 4  # flag, set here: no feed axis moves, so length and speed are those of the axes that ride along
 
 GEO = BEZIER_SIZE
@@ -42,7 +44,7 @@ WORK_POINT = 13
 # How a segment and its end are traversed with limited jerk, see `_jerk_plan`.
 LIMIT, ASKED, REDUCED, ZONE_IN, ZONE_OUT, EASE = 16, 17, 18, 19, 20, 21
 NODE_WAY, NODE_SPEED, NODE_ACCEL, NODE_FLOOR, NODE_COUNT, SHARE_IN, REACHED = 22, 23, 24, 25, 26, 27, 28
-# Geometry of a SPLINE is laid out in `_bezier`. Geometry of a WAIT.
+# Geometry of a SPLINE is laid out in `_bezier`, that of an OVERLAP in `_cubic`. Geometry of a WAIT.
 WAIT_S, WAIT_EVENT, WAIT_PASSES = 0, 1, 2
 
 TINY = 1e-12
@@ -86,7 +88,7 @@ class Segments(NamedTuple):
     row: npt.NDArray[np.void]  # [S] of SEGMENT_ROW
     start: Floats  # [S, n]
     end: Floats  # [S, n]
-    plane: npt.NDArray[np.int8]  # [S, 3] axes of an ARC or a SPLINE (first two), or of a CIRCLE3D
+    plane: npt.NDArray[np.int8]  # [S, 3] axes of an ARC or a SPLINE (first two), or of a CIRCLE3D or OVERLAP
     geo: Floats  # [S, GEO], or [S, GEO_WITH_JERK] where paths may have limited jerk
 
 

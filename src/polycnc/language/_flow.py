@@ -4,7 +4,7 @@ The compiler of a language is the `Words`: it writes its own statements and cond
 flow machine writes what is around them. A body that jumps lead into becomes a *region*: a loop over its pieces, of
 which `at` says which one is next; a jump sets it and goes on with that loop, through the loops in between (`go` says
 how far). Every round and every jump back counts, by itself or with the work that it comes back over, and after so much
-the program gives a `PAUSE`.
+the program gives a `PAUSE`; a round over nothing that changes anything waits, and gives one at once.
 """
 
 from __future__ import annotations
@@ -19,6 +19,7 @@ from polycnc.language._python import Emitter, Piece
 
 _GROUP = 32
 _LEAP_WORK = 50  # at most, where what it comes back over is not known
+_LEAP_ROUNDS = 10  # what a leap counts where rounds count the same: the mark has to be found
 _LABEL = re.compile("\x01([0-9]+)\x01")  # no text constant holds it: repr() writes it otherwise
 
 
@@ -71,21 +72,71 @@ class _Region:
         self.pieces: list[Piece[Any]] = []
 
 
+class _Rounds:
+    """Count rounds with what they come back over, and write their pauses (see `Flow`)."""
+
+    def __init__(
+        self, out: Emitter[Any], rounds: int, weigh: Weigh | None, changes: Callable[[], int] | None
+    ) -> None:
+        self.work = 0  # of all that is written
+        self._out = out
+        self._most = rounds
+        self._weigh = weigh
+        self._changes = changes
+        self._begun: dict[
+            int, tuple[int, int]
+        ] = {}  # work and changes before labels, and loops by their identity
+
+    def add(self, lines: Sequence[str]) -> None:
+        """Add the work of lines."""
+        if self._weigh is not None:
+            self.work += self._weigh(lines)
+
+    def begin(self, key: int) -> None:
+        """Take note that a label or a loop begins."""
+        self._begun[key] = self.work, 0 if self._changes is None else self._changes()
+
+    def end(self, key: int) -> None:
+        """Write the count of a round that comes back to a label or a loop."""
+        work, changes = self._begun[key]
+        if self._changes is not None and self._changes() == changes:
+            self._out.put(f"n = {self._most}", "yield PAUSE")
+        else:
+            self.count(1 if self._weigh is None else 1 + self.work - work)
+
+    def leap(self) -> None:
+        """Write the count of a jump whose place is calculated."""
+        self.count(_LEAP_ROUNDS if self._weigh is None else min(1 + self.work, _LEAP_WORK))
+
+    def count(self, work: int) -> None:
+        """Write that so much was done."""
+        self._out.put(f"n -= {work}")
+        with self._out.block("if n < 0:"):
+            self._out.put(f"n = {self._most}", "yield PAUSE")
+
+
 class Flow:
     """Write a program with its flow; a pause comes after `rounds` rounds and jumps back.
 
-    With `weigh`, which tells how much lines of Python do, a round counts as much as what it comes back over.
+    With `weigh`, which tells how much lines of Python do, a round counts as much as what it comes back over. `changes`
+    counts what has been written that changes something: a round over none of it is a wait, with a pause of its own.
     """
 
-    def __init__(self, out: Emitter[Any], words: Words, *, rounds: int, weigh: Weigh | None = None) -> None:
+    def __init__(
+        self,
+        out: Emitter[Any],
+        words: Words,
+        *,
+        rounds: int,
+        weigh: Weigh | None = None,
+        changes: Callable[[], int] | None = None,
+    ) -> None:
         self.places: dict[Hashable, tuple[int, int]] = {}
         """Region and piece of each mark, when all is written: what `leap` is given."""
         self._out = out
         self._words = words
         self._rounds = rounds
-        self._weigh = weigh
-        self._work = 0  # of all that is written
-        self._begun: dict[int, int] = {}  # work before each label, and before each loop by its identity
+        self._turns = _Rounds(out, rounds, weigh, changes)
         self._count = 0
         self._around: list[_Around] = []
         self._regions: list[_Region] = []
@@ -125,7 +176,7 @@ class Flow:
         """Write a jump to a mark."""
         label, region = self._labels[key]
         if label in self._numbers:
-            self.tick(self._since(label))
+            self._turns.end(label)
         self._go(region, f"\x01{label}\x01")
 
     def leap(self, place: str) -> None:
@@ -133,14 +184,8 @@ class Flow:
         self._out.put(f"to, k = {place}")
         for region in reversed(self._regions):
             with self._out.block(f"if to == {region.number}:"):
-                self.tick(min(1 + self._work, _LEAP_WORK))
+                self._turns.leap()
                 self._go(region, "k")
-
-    def tick(self, work: int = 1) -> None:
-        """Count a round with its work."""
-        self._out.put(f"n -= {1 if self._weigh is None else work}")
-        with self._out.block("if n < 0:"):
-            self._out.put(f"n = {self._rounds}", "yield PAUSE")
 
     # ------------------------------------------------------------------ bodies
 
@@ -200,27 +245,19 @@ class Flow:
             else:
                 before = len(out.lines)
                 words.statement(statement)
-                self._add(out.lines[before:])
+                self._turns.add(out.lines[before:])
 
     def _condition(self, structure: Any, number: int) -> str | None:
         before = len(self._out.lines)
         test = self._words.condition(structure, number)
-        self._add([*self._out.lines[before:], test or ""])
+        self._turns.add([*self._out.lines[before:], test or ""])
         return test
 
     def _end(self, loop: Loop) -> str | None:
         before = len(self._out.lines)
         ends = self._words.end(loop)
-        self._add([*self._out.lines[before:], ends or ""])
+        self._turns.add([*self._out.lines[before:], ends or ""])
         return ends
-
-    def _add(self, lines: Sequence[str]) -> None:
-        if self._weigh is not None:
-            self._work += self._weigh(lines)
-
-    def _since(self, key: int) -> int:
-        """Return the work of a round that comes back to a label or a loop."""
-        return 1 + self._work - self._begun[key]
 
     # ------------------------------------------------------------------ structures
 
@@ -267,7 +304,7 @@ class Flow:
 
     def _loop(self, loop: Loop) -> None:
         out = self._out
-        self._begun[id(loop)] = self._work
+        self._turns.begin(id(loop))
         out.divert()
         test = self._condition(loop, 0)
         before = out.diverted()
@@ -280,7 +317,7 @@ class Flow:
             self._body(loop.body)
             if (ends := self._end(loop)) is not None:
                 out.put(f"if {ends}: break")
-            self.tick(self._since(id(loop)))
+            self._turns.end(id(loop))
         self._leave_loop()
 
     def _parts_of_loop(self, loop: Loop) -> None:
@@ -288,7 +325,7 @@ class Flow:
         begin, close, end = (self._new_number() for _ in range(3))
         self._apart[id(loop)] = close if loop.closes else begin, end, self._regions[-1]
         self._mark(begin)
-        self._begun[id(loop)] = self._work
+        self._turns.begin(id(loop))
         if (test := self._condition(loop, 0)) is not None:
             with out.block(f"if not ({test}):"):
                 self._next(end)
@@ -298,14 +335,14 @@ class Flow:
         if (ends := self._end(loop)) is not None:
             with out.block(f"if {ends}:"):
                 self._next(end)
-        self.tick(self._since(id(loop)))
+        self._turns.end(id(loop))
         self._next(begin)
         self._mark(end)
 
     def _end_of_loop(self, statement: Leave | Again) -> None:
         ends = isinstance(statement, Leave)
         if not ends:
-            self.tick(self._since(id(statement.loop)))
+            self._turns.end(id(statement.loop))
         if apart := self._apart.get(id(statement.loop)):
             close, end, region = apart
             self._go(region, f"\x01{end if ends else close}\x01")
@@ -331,7 +368,7 @@ class Flow:
             pieces.append(self._out.diverted())
             self._out.divert()
         self._numbers[label] = len(pieces)
-        self._begun[label] = self._work
+        self._turns.begin(label)
 
     def _next(self, label: int) -> None:
         """Go on at a label of the present region, which is in no loop."""

@@ -13,10 +13,10 @@ from polycnc.machine._config import (
     PathConfig,
     SpindleConfig,
     TimesConfig,
-    ToolConfig,
 )
 from polycnc.machine._config_axis import AnyAxis, AxisConfig, LinearAxis, LinearServo, RotaryAxis, RotaryServo
 from polycnc.machine._config_probe import SurfaceConfig, first_contact
+from polycnc.machine._config_tool import ToolConfig
 from polycnc.machine._io import IoBits, IoImage, scan_edges
 from polycnc.machine._machine import AxisState, Machine, MachineStatus, Reason
 from polycnc.machine._presets import DEFAULT_MACHINE, PRESETS, load_machine, parse_machine, preset_text

@@ -18,6 +18,7 @@ from polycnc.machine._bounds import LARGEST_POSITION, LONGEST_BLOCK_S, SHORTEST_
 from polycnc.machine._config_axis import AnyAxis, NotNegative, Position, Rate, Share
 from polycnc.machine._config_probe import SurfaceConfig, surface_problems
 from polycnc.machine._config_programs import ProgramsConfig
+from polycnc.machine._config_tool import ToolConfig
 from polycnc.machine._toml import StrictModel, problem
 from polycnc.machine._toml_locator import KeyPath
 from polycnc.units import whole
@@ -224,24 +225,6 @@ class SpindleConfig(StrictModel):
                 at=("acceleration_rpm_s",),
             )
         return self
-
-
-class ToolConfig(StrictModel):
-    """Describe one tool."""
-
-    length_mm: float = Field(default=0.0, description="Length of the tool.")
-    radius_mm: NotNegative = Field(default=0.0, description="Radius of the tool.")
-    wear_length_mm: float = Field(default=0.0, description="Added to the length.")
-    wear_radius_mm: float = Field(default=0.0, description="Added to the radius.")
-    tip: Annotated[int, Field(ge=0, le=9)] = Field(
-        default=0,
-        description="Where the tip of a turning tool lies, as FANUC controls number it; 0 and 9: its middle.",
-    )
-    x_mm: float = Field(default=0.0, description="Offset of a turning tool along X, a radius.")
-    z_mm: float = Field(default=0.0, description="Offset of a turning tool along Z.")
-    wear_x_mm: float = Field(default=0.0, description="Added to the offset along X.")
-    wear_z_mm: float = Field(default=0.0, description="Added to the offset along Z.")
-    description: str = Field(default="", description="Any text.")
 
 
 class IoConfig(StrictModel):

@@ -16,11 +16,11 @@ from polycnc.machine._config import (
     PathConfig,
     SpindleConfig,
     TimesConfig,
-    ToolConfig,
 )
 from polycnc.machine._config_axis import AxisConfig, LinearAxis, LinearServo, RotaryAxis, RotaryServo
 from polycnc.machine._config_probe import SurfaceConfig
 from polycnc.machine._config_programs import ProgramsConfig
+from polycnc.machine._config_tool import ToolConfig
 from polycnc.machine._toml import range_text
 
 AXIS_COLUMNS = ("axis", "kind", "vmax", "amax", "soft limits", "home", "servo")
@@ -101,7 +101,12 @@ _SECTIONS: tuple[tuple[str, str, type[BaseModel], type[BaseModel]], ...] = (
     ("`[path]`", "How blocks are joined.", PathConfig, PathConfig),
     ("`[times]`", "The time of functions that are not motion.", TimesConfig, TimesConfig),
     ("`[spindle]`", "The spindle.", SpindleConfig, SpindleConfig),
-    ("`[tools.N]`", "One table for each tool; N is its number.", ToolConfig, ToolConfig),
+    (
+        "`[tools.N]`",
+        "One table for each tool; N is its number. What follows `description` is for [stock](../how-to/cut-stock.md).",
+        ToolConfig,
+        ToolConfig,
+    ),
     (
         "`[[surface]]`",
         "What a probe meets, in machine coordinates. One table each; an axis that is not named does not count.",

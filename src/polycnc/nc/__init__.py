@@ -5,6 +5,7 @@ from polycnc.nc.blocks._events import Event, EventRun, function_word
 from polycnc.nc.blocks._messages import Message
 from polycnc.nc.blocks._moves import Stop
 from polycnc.nc.blocks._probe import Probe
+from polycnc.nc.blocks._tip import TIPS
 from polycnc.nc.channel._channel import Channel
 from polycnc.nc.channel._channel_snapshot import CHANNEL_CLASSES, ChannelSnapshot, Texts
 from polycnc.nc.channel._languages import language_for
@@ -54,6 +55,7 @@ __all__ = [
     "DIALECTS",
     "LINE_MASK",
     "ROOM_BYTES",
+    "TIPS",
     "Action",
     "Block",
     "BlockRecord",

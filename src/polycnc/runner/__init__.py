@@ -22,9 +22,11 @@ from polycnc.runner._wall import WallClock
 
 if TYPE_CHECKING:
     from polycnc.runner._debugger import Debugger, Place
-    from polycnc.runner._machining import Machined, MachiningCollector, tools_of
+    from polycnc.runner._machined import Machined
+    from polycnc.runner._machining import MachiningCollector
     from polycnc.runner._post import PostResult, post_file
     from polycnc.runner._schemas import SCHEMAS, json_schema
+    from polycnc.runner._stock_tools import tools_of
     from polycnc.runner._survey import LineTime, Survey, holds_before, survey
     from polycnc.runner._verify import Violation, verify_trace
     from polycnc.runner._verify_post import Deviation, PostVerification, verify_post

@@ -72,6 +72,10 @@ def inspect(
     ignore: Iterable[str] = (),
     rehearse: bool = True,
     stock: str | None = None,
+    resolution_mm: float | None = None,
+    fixtures: Iterable[str] = (),
+    target: str | None = None,
+    tolerance_mm: float | None = None,
     progress: Progress | None = None,
 ) -> CheckReport:
     """Return the errors of a part program as `check` does, and what a machinist would remark on it.
@@ -79,14 +83,25 @@ def inspect(
     Remarked are cutting with the spindle at rest or without a tool, rapids across where the part has been cut,
     program stops, and a program in which nothing stands. A program with statements of a language (CPL) that is linked
     without an error is run in a copy of `root` for that, and for errors of the blocks that it gives, unless `rehearse`
-    is off or the folder is larger than 500 files or 32 MB; that, and where its run ended early, is logged. With `stock`
-    (as in `run`) a program without an error cuts it, and collisions are remarked too. `progress` is called now and then
-    with the part that is done, 0 to 1, and may end the check by what it raises.
+    is off or the folder is larger than 500 files or 32 MB; that, and where its run ended early, is logged. With
+    `stock`, `fixtures` and `target` (as in `run`) a program without an error cuts it, and collisions are remarked too,
+    feeding through air for long, and what is left on the target. `progress` is called now and then with the part that
+    is done, 0 to 1, and may end the check by what it raises.
 
     Raises:
         UsageError: no such file, machine or dialect.
     """
-    settings = RunSettings(machine, dialect, root=root, ignore=tuple(ignore), stock=stock)
+    settings = RunSettings(
+        machine,
+        dialect,
+        root=root,
+        ignore=tuple(ignore),
+        stock=stock,
+        resolution_mm=resolution_mm,
+        fixtures=tuple(fixtures),
+        target=target,
+        tolerance_mm=tolerance_mm,
+    )
     text = program_text(program)
     read = settings.dialect_of(text)
     if read.problem is not None:
@@ -139,6 +154,9 @@ def _collisions(text: ProgramText, settings: RunSettings) -> list[Remark]:
     if machined is None:
         return []
     unknown = [Remark("unknown_tool", each, begin) for each in machined.messages[1:]]
-    return unknown + [
+    wrong = [
         Remark(each.kind.name.lower(), str(each), each.position or begin) for each in machined.collisions
     ]
+    if (left := machined.comparison) is not None and left.rest_place is not None:
+        unknown.append(Remark("rest", str(left), begin))
+    return unknown + wrong + [Remark("air", str(each), each.position or begin) for each in machined.idle]

@@ -35,9 +35,9 @@ class EventLog:
         if event.stop is Stop.REFUSED:
             self.refused_s = run.machine.time_s if self.refused_s is None else self.refused_s
             return
-        self._note(event, run.machine.time_s, run.path_times, run)
+        self._note(event, run.machine.time_s, run.reading.path_times, run)
         if event.stop in (Stop.PROGRAM, Stop.OPTIONAL):
-            what = "the run stops here" if run.stands_at(event.stop) else "passed without stopping"
+            what = "the run stops here" if run.events.stands_at(event.stop) else "passed without stopping"
             run.channel.messages.note(f"{event.word}: {event.stop.value}, {what}", event.line)
 
     def note_passed(self, passed: Passed | PassedRun, run: ProgramRun) -> None:
@@ -66,7 +66,7 @@ class EventLog:
 
     def operations(self, run: ProgramRun) -> list[Operation]:
         """Return the operations of the program that has been run."""
-        return self._operations.operations(run.machine.time_s, run.path_times)
+        return self._operations.operations(run.machine.time_s, run.reading.path_times)
 
 
 def _changes_tool(event: Event, run: ProgramRun) -> bool:

@@ -19,8 +19,8 @@ from polycnc.runner._run_events import RunEvent
 from polycnc.runner._trace_tables import array_of, arrow_of, columns_of, pandas_of
 
 if TYPE_CHECKING:
-    from polycnc.runner._machining import Collision, Machined
-    from polycnc.stock import Stock
+    from polycnc.runner._machined import Collision, Machined
+    from polycnc.stock import Stock, Turned, Voxels
 
 Floats = npt.NDArray[np.float64]
 
@@ -183,7 +183,7 @@ class RunOutcome:
         return not self.alarms
 
     @property
-    def stock(self) -> Stock | None:
+    def stock(self) -> Stock | Turned | Voxels | None:
         """What is left of the body that was cut, with `stock`."""
         return None if self.machined is None else self.machined.stock
 

@@ -88,6 +88,11 @@ def control_for(
     return None if make is None else make(program, machine, surroundings)
 
 
+def has_control(dialect: Dialect) -> bool:
+    """Return whether a control executes the language of a dialect."""
+    return dialect.language in _CONTROLS
+
+
 def run_under(
     control: ProgramControl | None,
     machine: Machine,

@@ -45,6 +45,9 @@ def run(
     loop_limit_s: float = LOOP_LIMIT_S,
     stock: str | None = None,
     resolution_mm: float | None = None,
+    fixtures: Iterable[str] = (),
+    target: str | None = None,
+    tolerance_mm: float | None = None,
 ) -> TracedResult: ...
 
 
@@ -70,6 +73,9 @@ def run(
     loop_limit_s: float = LOOP_LIMIT_S,
     stock: str | None = None,
     resolution_mm: float | None = None,
+    fixtures: Iterable[str] = (),
+    target: str | None = None,
+    tolerance_mm: float | None = None,
 ) -> RunResult: ...
 
 
@@ -94,6 +100,9 @@ def run(
     loop_limit_s: float = LOOP_LIMIT_S,
     stock: str | None = None,
     resolution_mm: float | None = None,
+    fixtures: Iterable[str] = (),
+    target: str | None = None,
+    tolerance_mm: float | None = None,
 ) -> RunResult:
     """Run a part program on a simulated machine and return times, lengths, extents and messages.
 
@@ -113,8 +122,9 @@ def run(
     without a block or a WAIT; one that comes back to where it was is an error at once.
 
     With `stock` the tools cut a body: `auto`, `box=X0,Y0,Z0,X1,Y1,Z1`, `cylinder=D,Z0,Z1` (mm, work coordinates) or an
-    STL file, in cells of `resolution_mm`. What is left, what was removed and what went wrong are in the result:
-    `stock`, `removed_mm3`, `collisions`, `machined`.
+    STL file, in cells of `resolution_mm`. `fixtures` are boxes and STL files that nothing may touch, `target` is the
+    STL file of what is to come out, within `tolerance_mm` (0.02 mm if absent). What is left, what was removed and what
+    went wrong are in the result: `stock`, `removed_mm3`, `collisions`, `machined`.
 
     Raises:
         ProgramError: with `check`, the program cannot be run as written; what ran before it is in `.result`.
@@ -135,6 +145,9 @@ def run(
         loop_limit_s=loop_limit_s,
         stock=stock,
         resolution_mm=resolution_mm,
+        fixtures=tuple(fixtures),
+        target=target,
+        tolerance_mm=tolerance_mm,
     )
     return run_program(
         program, settings, trace=trace, check=check, rows=rows, tagged_rows=tagged_rows, progress=progress
@@ -223,7 +236,7 @@ def _to_end(
 ) -> ProgramError | None:
     """Run a program to its end; return the error of one that waits or loops without end."""
     if settings.feed_override != 1.0:
-        execution.feed_override = settings.feed_override
+        execution.overrides.feed = settings.feed_override
     if control is None:
         run_to_end(execution, every_cycle=record.every_cycle, progress=record.asked)
         return None
@@ -291,7 +304,7 @@ def _result(
         },
         alarms=alarms,
         messages=[RunMessage(m.text, m.line, m.count) for m in channel.messages.all()],
-        tool_times=execution.tool_times,
+        tool_times=execution.reading.tool_times,
         operations=log.operations(execution),
         events=log.events(),
         source=execution.program,

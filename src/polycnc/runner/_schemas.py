@@ -141,7 +141,30 @@ def _stock() -> Schema:
                     }
                 )
             ),
-        }
+            "idle_s": _time("Feed that removed nothing"),
+            "idle": _list(
+                _object(
+                    {
+                        "text": _TEXT,
+                        "program": _TEXT,
+                        "line": _LINE,
+                        "time_s": _time("When it began"),
+                        "duration_s": _time("For how long a block fed through air"),
+                        "place_mm": place,
+                    }
+                )
+            ),
+            "target": _object(
+                {
+                    "tolerance_mm": _length("How far the part may differ"),
+                    "gouge_mm3": volume,
+                    "rest_mm3": volume,
+                    "rest_mm": _length("The highest of what is left"),
+                    "rest_place_mm": _list({"type": "number"}, maxItems=3, description="Where that is."),
+                }
+            ),
+        },
+        ("target",),
     )
 
 
@@ -237,6 +260,9 @@ def _batch() -> Schema:
             "top_feed_mm_min": _or_null(_number("mm/min", low=0.0)),
             "blocks": count,
             "cycles": count,
+            "removed_mm3": _or_null(
+                _number("What was removed of the stock, mm3; null: none was cut", low=0.0)
+            ),
             "errors": _list(_TEXT),
             "messages": _list(_TEXT),
             "tools": _list(row(_COUNT, number, number), description="Tool, cutting and rapid time, s."),

@@ -41,6 +41,9 @@ class RunSettings:
     loop_limit_s: float = LOOP_LIMIT_S
     stock: str | None = None
     resolution_mm: float | None = None
+    fixtures: tuple[str, ...] = ()
+    target: str | None = None
+    tolerance_mm: float | None = None
     save_parameters: str | Path | None = None
     """Where the parameters that outlive the program are written at its end."""
     past_errors: bool = False
@@ -53,6 +56,12 @@ class RunSettings:
             raise UsageError(f"a feed override of {self.feed_override:g}", hint="Give more than 0, up to 2.")
         if self.resolution_mm is not None and self.stock is None:
             raise UsageError("a resolution without stock", hint="Say what is cut too, like stock='auto'.")
+        if self.fixtures and self.stock is None:
+            raise UsageError("fixtures without stock", hint="Say what is cut too, like stock='auto'.")
+        if self.target is not None and self.stock is None:
+            raise UsageError("a target without stock", hint="Say what is cut too, like stock='auto'.")
+        if self.tolerance_mm is not None and self.target is None:
+            raise UsageError("a tolerance without a target", hint="Name the STL file of what is to come out.")
         self.form()
 
     def form(self) -> Form | None:
@@ -63,9 +72,11 @@ class RunSettings:
         """
         if self.stock is None:
             return None
-        from polycnc.stock import Form
+        from polycnc.stock import TOLERANCE_MM, Form, check_fixtures
 
-        return Form(self.stock, self.resolution_mm)
+        check_fixtures(self.fixtures)
+        tolerance_mm = TOLERANCE_MM if self.tolerance_mm is None else self.tolerance_mm
+        return Form(self.stock, self.resolution_mm, self.fixtures, self.target, tolerance_mm)
 
     def dialect_of(self, text: ProgramText) -> ChosenDialect:
         """Return the dialect of a program, without the codes that are ignored, and why it was guessed.

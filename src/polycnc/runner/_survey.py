@@ -132,7 +132,7 @@ def holds_before(
         control, machine, text, dialect, RunOptions(stands_at_stops=False, collect_errors=True), root=root
     )
     try:
-        run.search(line=line, calculate=True)
+        run.selection.search(line=line, calculate=True)
     except PolycncError:
         return None
     channel = run.channel

@@ -1,16 +1,29 @@
 """What a moving tool leaves of a body: tools with shape, height fields, sweeps, and what goes wrong in them."""
 
+from polycnc.stock._contacts import Contact, ContactKind, Idle
 from polycnc.stock._course import Course
-from polycnc.stock._cutting import Contact, ContactKind, Cutting, Rows
+from polycnc.stock._cutting import Cutting
+from polycnc.stock._fixtures import check_fixtures, fixtures_of
 from polycnc.stock._form import Form, NoStockError, around
+from polycnc.stock._insert import Insert, InsertKind, grooving_tool, iso_insert, threading_tool
 from polycnc.stock._mesh import Mesh
+from polycnc.stock._mesh_files import MESH_FORMATS
 from polycnc.stock._profile import Arc, Line, Profile, make_profile
+from polycnc.stock._rows import Rows
 from polycnc.stock._solid import read_stl
 from polycnc.stock._stock import Box, Stock
+from polycnc.stock._target import TOLERANCE_MM, Target, TargetComparison
 from polycnc.stock._tool import Tool, ToolKind
 from polycnc.stock._tool_text import tool_number, tool_of_remark
+from polycnc.stock._turned import Turned
+from polycnc.stock._turned_cutting import TurnedCutting
+from polycnc.stock._turning import TurningCutting
+from polycnc.stock._voxels import Voxels
+from polycnc.stock._ways import Tally
 
 __all__ = [
+    "MESH_FORMATS",
+    "TOLERANCE_MM",
     "Arc",
     "Box",
     "Contact",
@@ -18,17 +31,32 @@ __all__ = [
     "Course",
     "Cutting",
     "Form",
+    "Idle",
+    "Insert",
+    "InsertKind",
     "Line",
     "Mesh",
     "NoStockError",
     "Profile",
     "Rows",
     "Stock",
+    "Tally",
+    "Target",
+    "TargetComparison",
     "Tool",
     "ToolKind",
+    "Turned",
+    "TurnedCutting",
+    "TurningCutting",
+    "Voxels",
     "around",
+    "check_fixtures",
+    "fixtures_of",
+    "grooving_tool",
+    "iso_insert",
     "make_profile",
     "read_stl",
+    "threading_tool",
     "tool_number",
     "tool_of_remark",
 ]

@@ -20,13 +20,13 @@ MOST_ROWS = 64
 def _distance2(place: Floats, begin: Floats, end: Floats) -> float:
     """Return the square of the distance of a place from the chord between two others (mm2)."""
     along, length2 = 0.0, 0.0
-    for i in range(3):
+    for i in range(begin.shape[0]):
         step = end[i] - begin[i]
         along += (place[i] - begin[i]) * step
         length2 += step * step
     share = min(1.0, max(0.0, along / length2)) if length2 > 0.0 else 0.0
     found = 0.0
-    for i in range(3):
+    for i in range(begin.shape[0]):
         missed = place[i] - begin[i] - share * (end[i] - begin[i])
         found += missed * missed
     return found
@@ -45,8 +45,8 @@ def _fits(places: Floats, begin: int, end: int, tolerance2: float) -> bool:
 def find_chords(places: Floats, keys: Integers, tolerance_mm: float, ends: Integers) -> int:
     """Write the row of each chord's end into `ends` [at least rows]; return how many chords there are.
 
-    `places` [rows, 3] is where the tool is (mm); the first chord begins at row 0. A chord lies within one value of
-    `keys` [rows], the key of the row at its end.
+    `places` [rows, 3 or more] is where the tool is (mm), and more points of it; the first chord begins at row 0. A
+    chord lies within one value of `keys` [rows], the key of the row at its end.
     """
     tolerance2 = tolerance_mm * tolerance_mm
     count, begin, end = 0, 0, 0

@@ -6,7 +6,7 @@ import numpy as np
 import numpy.typing as npt
 
 from polycnc.stock._chords import find_chords
-from polycnc.stock._cutting import Rows, joined
+from polycnc.stock._rows import Rows, joined
 
 Floats = npt.NDArray[np.float64]
 
@@ -29,7 +29,7 @@ class Course:
         if self._held is not None:
             rows = joined([self._held, rows])
         ends = np.zeros(len(rows.t_s), np.int64)
-        count = find_chords(rows.tip, rows.keys(), self._tolerance_mm, ends)
+        count = find_chords(rows.guides(), rows.keys(), self._tolerance_mm, ends)
         # The last chord may go on in the next piece: its beginning and its rows so far are looked at again.
         begin = int(ends[count - 2]) if count > 1 else 0
         kept = np.concatenate(([0], ends[: count - 1])) if count > 1 else np.zeros(1, np.int64)
@@ -41,5 +41,5 @@ class Course:
         if self._held is None:
             return joined([])
         ends = np.zeros(len(self._held.t_s), np.int64)
-        count = find_chords(self._held.tip, self._held.keys(), self._tolerance_mm, ends)
+        count = find_chords(self._held.guides(), self._held.keys(), self._tolerance_mm, ends)
         return joined([*self._pieces, self._held.at(np.concatenate(([0], ends[:count])))])

@@ -2,19 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from enum import StrEnum
-from itertools import pairwise
-from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
-from polycnc.stock._chords import find_chords
+from polycnc.stock._contacts import Contact, ContactKind, Idle
+from polycnc.stock._rows import Rows
 from polycnc.stock._stock import Stock
 from polycnc.stock._sweep import AT_X, AT_Y, DEPTH_MM, FIGURES, VOLUME_MM3, sweep
+from polycnc.stock._target import Target
 from polycnc.stock._tool import Tool
+from polycnc.stock._ways import Tally, Ways, WaysOfRows, runs
 
 Floats = npt.NDArray[np.float64]
 Integers = npt.NDArray[np.int64]
@@ -25,62 +25,8 @@ RIM_SHARE = 0.5
 """How much narrower bodies are that must not touch, as a part of a cell: a tool leaves the wall that it has cut."""
 LEAST_DEPTH_SHARE = 0.5
 """How deep something must be in the material to count as a collision, as a part of a cell."""
-
-
-class ContactKind(StrEnum):
-    """What went wrong."""
-
-    RAPID = "rapid through stock"
-    HOLDER = "holder in stock"
-    SPINDLE = "cut with the spindle at rest"
-    FLUTES = "cut deeper than the flutes are long"
-
-
-@dataclass(frozen=True, slots=True)
-class Contact:
-    """Say what went wrong in a block, the first time: number of the block, time, place and depth (mm)."""
-
-    kind: ContactKind
-    block: int
-    t_s: float
-    place: tuple[float, float, float]
-    depth_mm: float
-
-
-@dataclass(frozen=True, eq=False)
-class Rows:
-    """Hold a piece of a record, one row a cycle: `tip` is the end of the tool (mm), `turns` that the spindle does."""
-
-    t_s: Floats
-    tip: Floats  # [rows, 3]
-    block: Integers
-    tool: Integers
-    rapid: npt.NDArray[np.bool_]
-    turns: npt.NDArray[np.bool_]
-
-    def columns(self) -> tuple[npt.NDArray[Any], ...]:
-        """Return the columns in their order."""
-        return self.t_s, self.tip, self.block, self.tool, self.rapid, self.turns
-
-    def at(self, places: Integers) -> Rows:
-        """Return the rows at these places."""
-        return Rows(*(column[places] for column in self.columns()))
-
-    def keys(self) -> Integers:
-        """Return a number for each row that changes where one chord must not go on."""
-        changed = np.zeros(len(self.block), np.bool_)
-        for column in (self.block, self.tool, self.rapid, self.turns):
-            changed[1:] |= column[1:] != column[:-1]
-        changed[2:] |= self.tool[1:-1] != self.tool[:-2]  # where another tool is first is the end of a chord
-        return np.cumsum(changed)
-
-
-def joined(pieces: list[Rows]) -> Rows:
-    """Return pieces of a record as one."""
-    whole, flags = np.zeros(0, np.int64), np.zeros(0, np.bool_)
-    empty = Rows(np.zeros(0), np.zeros((0, 3)), whole, whole, flags, flags)
-    columns: Any = zip(*(each.columns() for each in [empty, *pieces]), strict=True)
-    return Rows(*(np.concatenate(column) for column in columns))
+IDLE_S = 3.0
+"""How long a block feeds through air before that is remarked."""
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -89,113 +35,159 @@ class _Outlines:
 
     cutter: Floats
     core: Floats
+    shank: Floats
     holder: Floats
     none: Floats
 
     @classmethod
     def of(cls, tool: Tool, rim_mm: float) -> _Outlines:
-        cutting, holder = tool.cutting_profile(), tool.holder_profile()
-        core = cutting.within(max(cutting.radius_mm - rim_mm, 0.5 * cutting.radius_mm))
-        clear = holder.within(max(holder.radius_mm - rim_mm, 0.5 * holder.radius_mm))
-        return cls(cutting.rows, core.rows, clear.rows, holder.rows[:0])
+        cutting, shank, holder = (
+            outline.within(max(outline.radius_mm - rim_mm, 0.5 * outline.radius_mm)).rows
+            for outline in (tool.cutting_profile(), tool.shank_profile(), tool.holder_profile())
+        )
+        return cls(tool.cutting_profile().rows, cutting, shank, holder, cutting[:0])
 
 
 class Cutting:
     """Let tools cut a body: what each block removed (mm3), and what went wrong (`contacts`).
 
-    A tool that is not among `tools` cuts nothing; its number is kept in `unknown_tools`.
+    A tool that is not among `tools` cuts nothing; its number is kept in `unknown_tools`. `fixtures` must not be touched
+    by any part of a tool; what they cut into `target` is a contact too.
     """
 
-    def __init__(self, stock: Stock, tools: Mapping[int, Tool]) -> None:
+    def __init__(
+        self,
+        stock: Stock,
+        tools: Mapping[int, Tool],
+        fixtures: Sequence[Stock] = (),
+        target: Target | None = None,
+    ) -> None:
         self.stock = stock
-        self.unknown_tools: set[int] = set()
         rim = RIM_SHARE * stock.cell_mm
         self._outlines = {number: _Outlines.of(tool, rim) for number, tool in tools.items()}
         self._tools = tools
-        self._removed = np.zeros(0)
-        self._by_tool: dict[int, float] = {}
-        self._contacts: dict[tuple[ContactKind, int], Contact] = {}
-        self._last: Rows | None = None  # one row
+        self._fixtures = fixtures
+        self._target = target
+        self.tally = Tally()
+        self._ways = WaysOfRows(CHORD_SHARE * stock.cell_mm)
 
     @property
     def removed_mm3(self) -> float:
         """What has been removed in all."""
-        return float(self._removed.sum())
+        return float(self.by_block_mm3.sum())
 
     @property
     def by_block_mm3(self) -> Floats:
         """What each block has removed, by its number."""
-        return self._removed
+        return self.tally.by_block_mm3
 
     @property
     def by_tool_mm3(self) -> dict[int, float]:
         """What each tool has removed."""
-        return dict(self._by_tool)
+        return dict(self.tally.by_tool_mm3)
+
+    @property
+    def unknown_tools(self) -> set[int]:
+        """The tools that cut nothing, because their shape is not known."""
+        return self.tally.unknown_tools
 
     @property
     def contacts(self) -> list[Contact]:
         """What went wrong, in the order of time; one for each kind and block, with its greatest depth."""
-        return sorted(self._contacts.values(), key=lambda each: each.t_s)
+        return self.tally.contacts.all()
+
+    @property
+    def idle(self) -> list[Idle]:
+        """The blocks that fed through air for long."""
+        return self.tally.idle
+
+    @property
+    def idle_s(self) -> float:
+        """How long tools fed without removing anything."""
+        return self.tally.idle_s
 
     def add(self, rows: Rows) -> None:
         """Take the next rows; the tool comes from where the last ones ended."""
-        if not len(rows.t_s):
-            return
-        rows = rows if self._last is None else joined([self._last, rows])
-        self._last = rows.at(np.array([len(rows.t_s) - 1]))
-        ends = np.zeros(len(rows.t_s), np.int64)
-        count = find_chords(rows.tip, rows.keys(), CHORD_SHARE * self.stock.cell_mm, ends)
-        nodes = np.concatenate(([0], ends[:count]))
-        tool, rapid = rows.tool[nodes], rows.rapid[nodes]
-        way = np.where(
-            tool[1:] == tool[:-1], 2 * tool[1:] + rapid[1:], -1
-        )  # another tool has not come that way
-        for first, last in _runs(way):
-            if way[first] >= 0:
-                self._sweep(rows.tip[nodes[first : last + 1]], nodes[first + 1 : last + 1], rows)
+        for ways in self._ways.of(rows):
+            self._sweep(ways)
 
-    def _sweep(self, places: Floats, ends: Integers, rows: Rows) -> None:
-        """Sweep the ways between places with one tool, all at rapid or none; `ends` are the rows at their ends."""
-        number = int(rows.tool[ends[0]])
-        outlines = self._outlines.get(number)
+    def _sweep(self, ways: Ways) -> None:
+        outlines = self._outlines.get(ways.number)
         if outlines is None:
-            self.unknown_tools.add(number)
+            self.tally.unknown_tools.add(ways.number)
             return
-        cut, touched, met = (np.zeros((len(ends), FIGURES)) for _ in range(3))
-        places = np.ascontiguousarray(places)
-        rapid = bool(rows.rapid[ends[0]])
-        if rapid:
-            sweep(self.stock.grid, places, outlines.none, outlines.core, cut, met)
-        sweep(self.stock.grid, places, outlines.cutter, outlines.holder, cut, touched)
-        blocks, volume, depth = rows.block[ends], cut[:, VOLUME_MM3], cut[:, DEPTH_MM]
-        if len(self._removed) <= blocks.max():
-            self._removed = np.concatenate((self._removed, np.zeros(int(blocks.max()) + 1)))
-        np.add.at(self._removed, blocks, volume)
-        self._by_tool[number] = self._by_tool.get(number, 0.0) + float(volume.sum())
-        least = LEAST_DEPTH_SHARE * self.stock.cell_mm
-        deep = depth > least
-        flutes = self._tools[number].flute_mm
-        for kind, wrong, figures in (
-            (ContactKind.RAPID, met[:, DEPTH_MM] > least, met),
-            (ContactKind.SPINDLE, deep & ~rows.turns[ends] & (not rapid), cut),
-            (ContactKind.FLUTES, depth > flutes, cut),
-            (ContactKind.HOLDER, touched[:, DEPTH_MM] > least, touched),
-        ):
-            for way in np.flatnonzero(wrong).tolist():
-                self._note(kind, int(ends[way]), figures[way], places[way : way + 2], rows)
+        none, grid, least = outlines.none, self.stock.grid, LEAST_DEPTH_SHARE * self.stock.cell_mm
+        for fixture in self._fixtures:
+            met, touched = self._figures(ways), self._figures(ways)
+            sweep(fixture.grid, ways.places, none, outlines.core, met, met)
+            above = outlines.holder if len(outlines.holder) else outlines.shank
+            sweep(fixture.grid, ways.places, none, above, touched, touched)
+            self._note(ContactKind.FIXTURE, ways, met, least)
+            self._note(ContactKind.FIXTURE_HOLDER, ways, touched, least)
+        if self._target is not None:
+            met = self._figures(ways)
+            self._target.gouges(ways.places, outlines.cutter, met)
+            self._note(ContactKind.GOUGE, ways, met, 0.0)
+        if ways.rapid:
+            met = self._figures(ways)
+            sweep(grid, ways.places, none, outlines.core, met, met)
+            self._note(ContactKind.RAPID, ways, met, least)
+        cut, touched, shank = self._figures(ways), self._figures(ways), self._figures(ways)
+        sweep(grid, ways.places, outlines.cutter, outlines.holder, cut, touched)
+        sweep(grid, ways.places, none, outlines.shank, shank, shank)
+        self._note(ContactKind.HOLDER, ways, touched, least)
+        self._note(ContactKind.SHANK, ways, shank, least)
+        self.tally.count(ways, cut[:, VOLUME_MM3])
+        tool = self._tools[ways.number]
+        self._note(ContactKind.FLUTES, ways, cut, tool.flute_mm)
+        if not ways.rapid:
+            turns = np.sign(ways.rows.turns[ways.ends].astype(np.float64))
+            self._note(ContactKind.SPINDLE, ways, cut, least, turns == 0)
+            self._note(ContactKind.DIRECTION, ways, cut, least, turns == (1 if tool.left_hand else -1))
+            self._note_idle(ways, cut, outlines)
 
-    def _note(self, kind: ContactKind, row: int, figures: Floats, way: Floats, rows: Rows) -> None:
-        key = kind, int(rows.block[row])
-        depth = float(figures[DEPTH_MM])
-        known = self._contacts.get(key)
-        if known is not None and known.depth_mm >= depth:
-            return
-        t_s = float(rows.t_s[row]) if known is None else known.t_s
-        place = float(figures[AT_X]), float(figures[AT_Y]), float(way[:, 2].min())
-        self._contacts[key] = Contact(kind, key[1], t_s, place, depth)
+    @staticmethod
+    def _figures(ways: Ways) -> Floats:
+        return np.zeros((len(ways.ends), FIGURES))
 
+    def _note(
+        self,
+        kind: ContactKind,
+        ways: Ways,
+        figures: Floats,
+        least_mm: float,
+        only: npt.NDArray[np.bool_] | None = None,
+    ) -> None:
+        """Note where something was deeper than it may be, of ways that count alone if `only` says which."""
+        wrong = figures[:, DEPTH_MM] > least_mm
+        for way in np.flatnonzero(wrong if only is None else wrong & only).tolist():
+            row, found = int(ways.ends[way]), figures[way]
+            place = float(found[AT_X]), float(found[AT_Y]), float(ways.places[way : way + 2, 2].min())
+            depth = float(found[DEPTH_MM])
+            self.tally.contacts.note(
+                Contact(kind, int(ways.rows.block[row]), float(ways.rows.t_s[row]), place, depth)
+            )
 
-def _runs(values: Integers) -> Iterator[tuple[int, int]]:
-    """Yield from where to where values are equal."""
-    begins = np.flatnonzero(np.diff(values, prepend=~values[:1]))
-    return pairwise([*begins.tolist(), len(values)])
+    def _note_idle(self, ways: Ways, cut: Floats, outlines: _Outlines) -> None:
+        """Count the time of feeding that removes nothing, and note blocks that feed through air for long.
+
+        A tool that goes along what it has cut is not in the air: it would cut if it were two cells lower.
+        """
+        moves = np.any(ways.places[1:] != ways.places[:-1], axis=1)
+        duration = np.where(moves & (cut[:, VOLUME_MM3] <= 0.0), ways.duration_s, 0.0)
+        self.tally.idle_s += float(duration.sum())
+        block = ways.block
+        for first, last in runs(block):
+            if cut[first:last, VOLUME_MM3].any() or duration[first:last].sum() < IDLE_S:
+                continue
+            lower = ways.places[first : last + 1] - (0.0, 0.0, 2.0 * self.stock.cell_mm)
+            touched = np.zeros((last - first, FIGURES))
+            sweep(
+                self.stock.grid, np.ascontiguousarray(lower), outlines.none, outlines.core, touched, touched
+            )
+            if not touched[:, DEPTH_MM].any():
+                x, y, z = ways.places[last].tolist()
+                t_s = float(ways.rows.t_s[ways.begins[first]])
+                self.tally.idle.append(
+                    Idle(int(block[first]), t_s, float(duration[first:last].sum()), (x, y, z))
+                )

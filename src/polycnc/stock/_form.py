@@ -11,13 +11,17 @@ from pathlib import Path
 import numpy as np
 
 from polycnc.errors import UsageError
-from polycnc.stock._cutting import Rows
+from polycnc.stock._rows import Rows
 from polycnc.stock._solid import solid_stock
 from polycnc.stock._stock import Box, Stock, check_cell
+from polycnc.stock._target import TOLERANCE_MM, Target, check_tolerance
 from polycnc.stock._tool import Tool
+from polycnc.stock._turned import Turned
+from polycnc.stock._voxels import Voxels
 
 MARGIN_MM = 1.0
 """Of an `auto` body around what is cut."""
+_FINER_TURNED = 5
 CELLS_ACROSS = 1000
 """How many cells there are along the longer side where no resolution is given."""
 _FORMS = "auto, box=X0,Y0,Z0,X1,Y1,Z1, cylinder=D,Z0,Z1 or the name of an STL file"
@@ -29,19 +33,29 @@ class NoStockError(UsageError):
 
 @dataclass(frozen=True, slots=True)
 class Form:
-    """Say what body to cut: its text, and the resolution (mm) if one was given."""
+    """Say what body to cut: its text, and the resolution (mm) if one was given.
+
+    `fixtures` are texts of what stands beside it, `target` is the STL file of what is to come out, within
+    `tolerance_mm`.
+    """
 
     text: str
     cell_mm: float | None = None
+    fixtures: tuple[str, ...] = ()
+    target: str | None = None
+    tolerance_mm: float = TOLERANCE_MM
 
     def __post_init__(self) -> None:
         kind, _, numbers = self.text.partition("=")
         if kind in ("box", "cylinder"):
-            _numbers(self.text, numbers, 6 if kind == "box" else 3)
+            numbers_of(self.text, numbers, 6 if kind == "box" else 3)
         elif self.text != "auto" and not self.text.lower().endswith(".stl"):
             raise UsageError(f"'{self.text}' is no stock", hint=f"Write {_FORMS}.")
         if self.cell_mm is not None:
             check_cell(self.cell_mm)
+        check_tolerance(self.tolerance_mm)
+        if self.target is not None and not self.target.lower().endswith(".stl"):
+            raise UsageError(f"'{self.target}' is no target", hint="Name an STL file.")
 
     def body(self, course: Rows, tools: Mapping[int, Tool]) -> Stock:
         """Return the body for a course of the tool.
@@ -51,10 +65,10 @@ class Form:
         """
         kind, _, numbers = self.text.partition("=")
         if kind == "box":
-            x0, y0, z0, x1, y1, z1 = _numbers(self.text, numbers, 6)
+            x0, y0, z0, x1, y1, z1 = numbers_of(self.text, numbers, 6)
             box = Box((x0, y0, z0), (x1, y1, z1))
         elif kind == "cylinder":
-            diameter, low, high = _numbers(self.text, numbers, 3)
+            diameter, low, high = numbers_of(self.text, numbers, 3)
             return Stock.cylinder(diameter, low, high, self.cell_mm or _cell_mm(diameter))
         elif self.text == "auto":
             box = around(course, tools)
@@ -63,6 +77,56 @@ class Form:
         return Stock(
             box, self.cell_mm or _cell_mm(max(b - a for a, b in zip(box.low[:2], box.high, strict=False)))
         )
+
+    def turned_body(self, course: Rows) -> Turned:
+        """Return the body that a lathe turns, for a course of the tool: X is the distance from the axis.
+
+        Raises:
+            UsageError: nothing is cut, or a body that no lathe turns.
+        """
+        if self.fixtures or self.target is not None:
+            raise UsageError(
+                "fixtures and targets on a lathe", hint="They are for three axes: leave them out."
+            )
+        if self.text == "auto":
+            diameter, low, high = around_turned(course)
+        elif self.text.startswith("cylinder="):
+            diameter, low, high = numbers_of(self.text, self.text.partition("=")[2], 3)
+        else:
+            raise UsageError(f"'{self.text}' on a lathe", hint="Write auto or cylinder=D,Z0,Z1.")
+        return Turned(diameter, low, high, self.cell_mm or _cell_mm((high - low) / _FINER_TURNED))
+
+    def voxels(self) -> Voxels:
+        """Return the body for tools that come from any side.
+
+        Raises:
+            UsageError: a body that is not one of these.
+        """
+        if self.fixtures or self.target is not None:
+            raise UsageError(
+                "fixtures and targets with turning axes", hint="They are for three axes: leave them out."
+            )
+        kind, _, numbers = self.text.partition("=")
+        if kind == "box":
+            x0, y0, z0, x1, y1, z1 = numbers_of(self.text, numbers, 6)
+            size = max(x1 - x0, y1 - y0, z1 - z0)
+            return Voxels(Box((x0, y0, z0), (x1, y1, z1)), self.cell_mm or _cell_mm(_FINER_TURNED * size))
+        if kind == "cylinder":
+            diameter, low, high = numbers_of(self.text, numbers, 3)
+            cell_mm = self.cell_mm or _cell_mm(_FINER_TURNED * max(diameter, high - low))
+            return Voxels.cylinder(diameter, low, high, cell_mm)
+        raise NoStockError(
+            f"'{self.text}' where an axis turns the part or the tool",
+            hint="Write box=X0,Y0,Z0,X1,Y1,Z1 or cylinder=D,Z0,Z1.",
+        )
+
+    def target_of(self, stock: Stock) -> Target | None:
+        """Return what is to come out of a body; None if that is not said.
+
+        Raises:
+            UsageError: no such file, or a surface that is none.
+        """
+        return None if self.target is None else Target(Path(self.target), stock, self.tolerance_mm)
 
 
 def _cell_mm(size_mm: float) -> float:
@@ -74,14 +138,19 @@ def _cell_mm(size_mm: float) -> float:
     )
 
 
-def _numbers(text: str, numbers: str, count: int) -> list[float]:
+def numbers_of(text: str, numbers: str, count: int, forms: str = _FORMS) -> list[float]:
+    """Return the numbers after the kind of a body.
+
+    Raises:
+        UsageError: too few or too many, or none.
+    """
     found = re.split(r"\s*,\s*", numbers.strip())
     try:
         values = [float(each) for each in found]
     except ValueError:
         values = []
     if len(values) != count or not all(map(math.isfinite, values)):
-        raise UsageError(f"'{text}' is no stock", hint=f"Write {_FORMS}, with {count} numbers (mm) here.")
+        raise UsageError(f"'{text}' is no body", hint=f"Write {forms}, with {count} numbers (mm) here.")
     return values
 
 
@@ -118,6 +187,28 @@ def around(course: Rows, tools: Mapping[int, Tool]) -> Box:
     for (x, y), away in zip(end[deep, :2].tolist(), radius[1:][deep].tolist(), strict=True):
         _leave_out((x, y), away, low, high)
     return Box((low[0], low[1], low[2]), (high[0], high[1], high[2]))
+
+
+def around_turned(course: Rows) -> tuple[float, float, float]:
+    """Return diameter and ends along Z of the bar that holds what is turned.
+
+    It is as thick as the tool gets at a feed, ends 1 mm behind its last place, and begins where it is faced, at program
+    zero if it is not.
+
+    Raises:
+        NoStockError: nothing is cut.
+    """
+    begin, end = course.tip[:-1], course.tip[1:]
+    cuts = ~course.rapid[1:] & np.any(begin != end, axis=1)
+    if not cuts.any():
+        raise NoStockError(
+            "the program cuts nothing: no stock can be told", hint="Give one, like cylinder=30,-60,0."
+        )
+    places = np.concatenate((begin[cuts], end[cuts]))
+    faces = cuts & (np.abs(begin[:, 2] - end[:, 2]) < 1e-6) & (end[:, 0] <= 0.0)
+    high = float(end[faces][:, 2].max()) if faces.any() else 0.0
+    low = float(places[:, 2].min()) - MARGIN_MM
+    return 2.0 * float(np.abs(places[:, 0]).max()), low, max(high, low + 2.0 * MARGIN_MM)
 
 
 def _leave_out(place: tuple[float, float], radius: float, low: list[float], high: list[float]) -> None:

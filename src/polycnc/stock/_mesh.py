@@ -9,6 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from polycnc.outputs import complete_or_absent
+from polycnc.stock._mesh_files import stl, write_mesh
 from polycnc.stock._sweep import Grid
 
 
@@ -25,17 +26,18 @@ class Mesh:
         a, b, c = (self.vertices[self.faces[:, corner]] for corner in range(3))
         return float(np.einsum("ij,ij->i", a, np.cross(b, c)).sum() / 6.0)
 
+    def write(self, path: str | Path) -> None:
+        """Write an .stl or .3mf file, whole or not at all.
+
+        Raises:
+            UsageError: another extension, or no such folder.
+        """
+        write_mesh(self.vertices, self.faces, path)
+
     def write_stl(self, path: str | Path) -> None:
         """Write a binary STL file, whole or not at all."""
-        a, b, c = (self.vertices[self.faces[:, corner]] for corner in range(3))
-        normal = np.cross(b - a, c - a)
-        length = np.linalg.norm(normal, axis=1, keepdims=True)
-        row = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
-        rows = np.zeros(len(self.faces), row)
-        rows["normal"] = np.divide(normal, length, out=np.zeros_like(normal), where=length > 0.0)
-        rows["corners"] = np.stack((a, b, c), axis=1)
         with complete_or_absent(Path(path)) as partial:
-            partial.write_bytes(b"polycnc".ljust(80) + np.uint32(len(rows)).tobytes() + rows.tobytes())
+            partial.write_bytes(stl(self.vertices, self.faces))
 
 
 def mesh(grid: Grid) -> Mesh:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable
 from pathlib import Path
 
@@ -11,12 +12,13 @@ import numpy.typing as npt
 from polycnc.errors import UsageError
 from polycnc.kernel import entry
 from polycnc.stock._mesh import Mesh
-from polycnc.stock._stock import Box, Stock
+from polycnc.stock._stock import FARTHEST_MM, Box, Stock
 
-MOST_TRIANGLES = 20_000_000
-MOST_BYTES = 2_000_000_000
+MOST_TRIANGLES = 5_000_000
+MOST_TEXT_BYTES = 200_000_000
 _ROW = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
 _HEADER = 84
+_VERTEX = re.compile(rb"\bvertex\s+(\S+)\s+(\S+)\s+(\S+)", re.IGNORECASE)
 
 
 def read_stl(path: Path) -> Mesh:
@@ -25,38 +27,60 @@ def read_stl(path: Path) -> Mesh:
     Raises:
         UsageError: no such file, no STL, too many triangles, or numbers that are none.
     """
-    try:
-        if path.exists() and not path.is_file():
-            raise UsageError(f"'{path}' is no file", hint="Name an STL file.")
-        if (size := path.stat().st_size) > MOST_BYTES:
-            raise UsageError(f"'{path}' has {size:,} bytes", hint=f"At most {MOST_BYTES:,} are read.")
-        content = path.read_bytes()
-    except OSError as error:
-        raise UsageError(
-            f"cannot read '{path}': {error.strerror}", hint="Check the name and the folder."
-        ) from None
+    content = _content(path)
     count = int(np.frombuffer(content[80:_HEADER], "<u4")[0]) if len(content) >= _HEADER else -1
-    if count > MOST_TRIANGLES:
-        raise UsageError(f"'{path}' has {count:,} triangles", hint=f"At most {MOST_TRIANGLES:,} are read.")
     if count >= 0 and len(content) == _HEADER + count * _ROW.itemsize:
         corners = np.frombuffer(content, _ROW, offset=_HEADER)["corners"].reshape(-1, 3).astype(np.float64)
     else:
         corners = _text_corners(path, content)
     if not len(corners) or not np.isfinite(corners).all():
         raise UsageError(f"'{path}' has no triangles or wrong numbers", hint="Export it anew.")
+    if (farthest := float(np.abs(corners).max())) > FARTHEST_MM:
+        raise UsageError(
+            f"'{path}' reaches {farthest:g} mm", hint=f"Corners are at most {FARTHEST_MM:,.0f} mm from zero."
+        )
     vertices, faces = np.unique(corners, axis=0, return_inverse=True)
     return Mesh(vertices, faces.reshape(-1, 3).astype(np.int64))
 
 
-def _text_corners(path: Path, content: bytes) -> npt.NDArray[np.float64]:
-    words = content.split()
-    at = [n for n, word in enumerate(words) if word.lower() == b"vertex"]
+def _content(path: Path) -> bytes:
+    """Return what is in a file, whose size is looked at first: some hundred bytes are needed for a triangle."""
     try:
-        numbers = [[float(each) for each in words[n + 1 : n + 4]] for n in at]
-        corners = np.array(numbers, np.float64).reshape(-1, 3)
+        if path.exists() and not path.is_file():
+            raise UsageError(f"'{path}' is no file", hint="Name an STL file.")
+        size = path.stat().st_size
+        with path.open("rb") as file:
+            head = file.read(_HEADER)
+            count = int(np.frombuffer(head[80:], "<u4")[0]) if len(head) == _HEADER else 0
+            binary = size == _HEADER + count * _ROW.itemsize
+            if count > MOST_TRIANGLES and (binary or not _is_text(head)):
+                raise UsageError(
+                    f"'{path}' has {count:,} triangles",
+                    hint=f"At most {MOST_TRIANGLES:,} are read: export it coarser.",
+                )
+            if not binary and size > MOST_TEXT_BYTES:
+                raise UsageError(
+                    f"'{path}' has {size:,} bytes and is no binary STL file",
+                    hint=f"As text at most {MOST_TEXT_BYTES:,} are read: export it as binary STL.",
+                )
+            return head + file.read(size)
+    except OSError as error:
+        raise UsageError(
+            f"cannot read '{path}': {error.strerror}", hint="Check the name and the folder."
+        ) from None
+
+
+def _is_text(content: bytes) -> bool:
+    return content[:_HEADER].lstrip()[:5].lower() == b"solid"
+
+
+def _text_corners(path: Path, content: bytes) -> npt.NDArray[np.float64]:
+    found = _VERTEX.findall(content) if _is_text(content) else []
+    try:
+        corners = np.array([[float(each) for each in place] for place in found], np.float64).reshape(-1, 3)
     except ValueError:
         corners = np.zeros((1, 3))
-    if not words or words[0].lower() != b"solid" or len(corners) % 3:
+    if not len(corners) or len(corners) % 3:
         raise UsageError(f"'{path}' is no STL file", hint="Binary and text STL are read.")
     return corners
 

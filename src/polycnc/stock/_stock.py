@@ -101,6 +101,9 @@ class Stock:
         stock.grid.z[x**2 + y[:, None] ** 2 > radius**2] = low_z
         return stock
 
+    def __str__(self) -> str:
+        return str(self.box)
+
     @property
     def cell_mm(self) -> float:
         """The width of a cell."""

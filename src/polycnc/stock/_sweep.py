@@ -2,7 +2,7 @@
 
 All lengths are mm. A field is a grid of heights [rows along y, columns along x] at the middle of its cells.
 Over one cell the lowest point of the body is the least of `slope * s + h(distance)` along the chord, which each piece
-of the outline has in closed form; only a rounded corner on a slope is found by halving.
+of the outline has in closed form; only a rounded corner on a slope is found step by step.
 """
 
 from __future__ import annotations
@@ -20,8 +20,10 @@ from polycnc.stock._profile import ARC_R, BEGIN_Z, CENTRE_R, CENTRE_Z, FROM_R, S
 Floats = npt.NDArray[np.float64]
 
 _FAR = 1e300
-_BISECTIONS = 24
+_CORNER_MM = 1e-6
+_STEPS_TO_CORNER = 48
 _BOUNDS = 1024
+_CELLS_A_STEP = 5  # most are left as they are
 _REACH_CELLS = 0.6  # half the length of what is a short way
 
 
@@ -60,7 +62,7 @@ def _outline(row: Floats, r: float) -> float:
 
 
 @compiled
-def _level(rows: Floats, r: float) -> float:
+def level(rows: Floats, r: float) -> float:
     """Return the height of an outline at radius `r`."""
     for i in range(rows.shape[0]):
         if r <= rows[i, TO_R]:
@@ -89,18 +91,24 @@ def _gradient(row: Floats, q2: float, slope: float, w: float) -> float:
 
 @compiled
 def _on_corner(row: Floats, q2: float, slope: float, low: float, high: float) -> float:
-    """Return where from `low` to `high` a rounded corner is lowest over a cell on a slope."""
-    if _gradient(row, q2, slope, low) >= 0.0:
+    """Return where from `low` to `high` a corner is lowest over a cell on a slope, to `_CORNER_MM` in height."""
+    below = _gradient(row, q2, slope, low)
+    if below >= 0.0:
         return low
-    if _gradient(row, q2, slope, high) <= 0.0:
+    above = _gradient(row, q2, slope, high)
+    if above <= 0.0:
         return high
-    w = 0.5 * (low + high)
-    for _ in range(_BISECTIONS):
-        if _gradient(row, q2, slope, w) > 0.0:
-            high = w
+    w = low
+    for step in range(_STEPS_TO_CORNER):
+        # Along the secant, and halved each other time: that gets there however steep one end is.
+        w = 0.5 * (low + high) if step % 2 else (low * above - high * below) / (above - below)
+        here = _gradient(row, q2, slope, w)
+        if abs(here) * (high - low) < _CORNER_MM:
+            break
+        if here > 0.0:
+            high, above = w, here
         else:
-            low = w
-        w = 0.5 * (low + high)
+            low, below = w, here
     return w
 
 
@@ -128,14 +136,14 @@ def _least(row: Floats, q2: float, slope: float, low: float, high: float) -> flo
 
 
 @compiled
-def _lowest(rows: Floats, q2: float, slope: float, before: float, after: float) -> float:
+def lowest(rows: Floats, q2: float, slope: float, before: float, after: float) -> float:
     """Return how low a body gets over a cell, against its tip at the foot of the cell.
 
     The way leads from `before` to `after` about that foot, which lies `sqrt(q2)` beside it.
     """
     if slope == 0.0:
         w = min(max(0.0, before), after)
-        return _level(rows, math.sqrt(q2 + w * w))
+        return level(rows, math.sqrt(q2 + w * w))
     found = _FAR
     for i in range(rows.shape[0]):
         outer2 = rows[i, TO_R] * rows[i, TO_R] - q2
@@ -160,11 +168,11 @@ def _bounds(rows: Floats, reach: float, bounds: Floats) -> None:
     """
     outer = rows[rows.shape[0] - 1, TO_R]
     for i in range(bounds.shape[0]):
-        bounds[i] = _level(rows, max(0.0, (outer + reach) * math.sqrt(i / bounds.shape[0]) - reach))
+        bounds[i] = level(rows, max(0.0, (outer + reach) * math.sqrt(i / bounds.shape[0]) - reach))
 
 
 @compiled
-def _span(begin: Floats, end: Floats, ux: float, uy: float, radius: float, y: float) -> tuple[float, float]:
+def span(begin: Floats, end: Floats, ux: float, uy: float, radius: float, y: float) -> tuple[float, float]:
     """Return from where to where along x a body of this radius covers the line `y` on its way."""
     low, high = _FAR, -_FAR
     for place in (begin, end):
@@ -197,7 +205,7 @@ def _sweep_chord(
     volume, depth, left, right = 0.0, 0.0, _FAR, -_FAR
     for iy in range(first_y, last_y + 1):
         y = grid.y0 + iy * grid.cell_mm
-        low, high = _span(begin, end, ux, uy, radius, y)
+        low, high = span(begin, end, ux, uy, radius, y)
         if low > high:
             continue
         first_x = max(0, math.ceil((low - grid.x0) / grid.cell_mm))
@@ -217,9 +225,9 @@ def _sweep_chord(
             along = dx * ux + dy * uy
             beside = dy * ux - dx * uy
             if length > 0.0:
-                z = begin[2] + slope * along + _lowest(rows, beside * beside, slope, -along, length - along)
+                z = begin[2] + slope * along + lowest(rows, beside * beside, slope, -along, length - along)
             else:
-                z = lowest_tip + _level(rows, math.sqrt(dx * dx + dy * dy))
+                z = lowest_tip + level(rows, math.sqrt(dx * dx + dy * dy))
             z = max(z, grid.bottom)
             if z >= here:
                 continue
@@ -236,9 +244,22 @@ def _sweep_chord(
     figures[WIDTH_LOW_MM], figures[WIDTH_HIGH_MM] = (left, right) if depth > 0.0 else (0.0, 0.0)
 
 
-def _steps(grid: Grid, places: Floats, *_: object) -> int:
-    """Return about how many cells are looked at, where the radius is not known."""
-    return 50 * len(places)
+def _steps(grid: Grid, places: Floats, cutter: Floats, holder: Floats, *_: object) -> int:
+    """Return about how many cells are looked at: those within a body's radius of its ways, and in the field."""
+    size = np.array(grid.z.shape[::-1]) * grid.cell_mm
+    first = np.array([grid.x0, grid.y0]) - 0.5 * grid.cell_mm
+    low, high = np.minimum(places[:-1, :2], places[1:, :2]), np.maximum(places[:-1, :2], places[1:, :2])
+    found = len(places)
+    for rows in (cutter, holder):
+        if len(rows):
+            begin, end = (
+                np.maximum(low - rows[-1, TO_R], first),
+                np.minimum(high + rows[-1, TO_R], first + size),
+            )
+            found += int(
+                np.prod(np.maximum(end - begin, 0.0), axis=1).sum() / grid.cell_mm**2 / _CELLS_A_STEP
+            )
+    return found
 
 
 @entry(steps=_steps)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from enum import StrEnum
+from itertools import pairwise
 
 from polycnc.errors import UsageError
 from polycnc.stock._profile import Arc, Line, Profile, make_profile
@@ -31,8 +32,8 @@ class Tool:
 
     `corner_mm` is the radius at the end of a bull-nosed tool, `angle_deg` the included angle of a point (drills,
     chamfering tools) or the angle of a flank to the axis (tapers), `tip_mm` the flat diameter at the end of a
-    chamfering or tapered tool. `flute_mm` is how far up it cuts, infinite where that is not known. `holder` are
-    cylinders above: height above the tip and radius, from below.
+    chamfering or tapered tool. `flute_mm` is how far up it cuts, infinite where that is not known. `shank` and `holder`
+    are cylinders above: height above the tip and radius, from below. A `left_hand` tool cuts with M4.
 
     Raises:
         UsageError: a size that no tool has, or sizes that do not fit together.
@@ -45,9 +46,11 @@ class Tool:
     tip_mm: float = 0.0
     flute_mm: float = math.inf
     holder: tuple[tuple[float, float], ...] = ()
+    shank: tuple[tuple[float, float], ...] = ()
+    left_hand: bool = False
 
     def __post_init__(self) -> None:
-        sizes = (self.diameter_mm, *(size for step in self.holder for size in step))
+        sizes = (self.diameter_mm, *(size for step in (*self.shank, *self.holder) for size in step))
         if not all(0.0 < size <= LARGEST_MM for size in sizes):
             raise UsageError(
                 f"a {self.kind} tool of {self.diameter_mm:g} mm",
@@ -69,10 +72,11 @@ class Tool:
                 f"an angle of {self.angle_deg:g} degrees on a {self.kind} tool",
                 hint="Points have an angle between 0 and 180 degrees, flanks of tapers one between 0 and 90.",
             )
-        if self.flute_mm <= 0.0:
+        if not self.flute_mm > 0.0:
             raise UsageError("a tool without flutes", hint="Give a flute length above 0 mm.")
-        if any(low[0] > high[0] for low, high in zip(self.holder, self.holder[1:], strict=False)):
-            raise UsageError("steps of a holder that do not rise", hint="Give them from below.")
+        for name, steps in (("shank", self.shank), ("holder", self.holder)):
+            if any(low[0] > high[0] for low, high in pairwise(steps)):
+                raise UsageError(f"steps of a {name} that do not rise", hint="Give them from below.")
 
     @property
     def radius_mm(self) -> float:
@@ -99,10 +103,18 @@ class Tool:
                 return make_profile((*flat, Line(tip, radius, 0.0, rise)))
 
     def holder_profile(self) -> Profile:
-        """Return the outline of what must not touch anything: the holder's steps."""
-        pieces, inner = [], 0.0
-        for height, radius in self.holder:
-            if radius > inner:
-                pieces.append(Line(inner, radius, height, height))
-                inner = radius
-        return make_profile(pieces) if pieces else _NO_PROFILE
+        """Return the outline of the holder, which must not touch anything."""
+        return _steps_profile(self.holder)
+
+    def shank_profile(self) -> Profile:
+        """Return the outline of the shank, which must not touch anything."""
+        return _steps_profile(self.shank)
+
+
+def _steps_profile(steps: tuple[tuple[float, float], ...]) -> Profile:
+    pieces, inner = [], 0.0
+    for height, radius in steps:
+        if radius > inner:
+            pieces.append(Line(inner, radius, height, height))
+            inner = radius
+    return make_profile(pieces) if pieces else _NO_PROFILE

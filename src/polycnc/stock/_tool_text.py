@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from dataclasses import replace
 
 from polycnc.errors import UsageError
 from polycnc.stock._tool import Tool, ToolKind
@@ -16,6 +17,7 @@ _ANGLE = re.compile(
     rf"\b(?:TAPER|TIP|ANGLE)\s*[=:]?\s*{_NUMBER}\s*(?:DEG|°)|{_NUMBER}\s*(?:DEG\w*|°)", re.IGNORECASE
 )
 _SIZE = re.compile(rf"{_NUMBER}\s*(mm\b|inch\b|in\b|\")", re.IGNORECASE)
+_LEFT_HAND = re.compile(r"\bleft[ -]?hand(?:ed)?\b|\bLH\b", re.IGNORECASE)
 _POINT_DEG = 118.0
 _CHAMFER_DEG = 90.0
 _KINDS = (
@@ -51,9 +53,10 @@ def tool_of_remark(remark: str, *, inch: bool = False) -> Tool | None:
     if kind is ToolKind.FLAT and corner > 0.0:
         kind = ToolKind.BALL if corner >= 0.5 * size else ToolKind.BULL
     try:
-        return _tool(kind, size, corner, angle)
+        tool = _tool(kind, size, corner, angle)
     except UsageError:
         return None
+    return replace(tool, left_hand=True) if tool is not None and _LEFT_HAND.search(remark) else tool
 
 
 def _tool(kind: ToolKind, size: float, corner: float, angle: float) -> Tool | None:

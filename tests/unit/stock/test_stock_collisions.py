@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 
 from polycnc.errors import UsageError
 from polycnc.stock import Arc, Box, ContactKind, Cutting, Line, Rows, Stock, Tool, ToolKind, make_profile
+from support.often import share
 
 PLACES = [(-19.0, 11.0, 4.0), (-19.0, 11.0, -3.0), (47.0, 11.0, -3.0), (47.0, 11.0, 4.0), (-19.0, 25.0, 4.0)]
 RAPID = np.array([True, True, False, False, True])
@@ -79,7 +80,7 @@ def test_short_flutes_and_a_low_holder_are_found() -> None:
     along=st.integers(-60, 60),
     cell=st.sampled_from([0.25, 0.2, 0.1]),
 )
-@settings(max_examples=40)
+@settings(max_examples=share(40))
 def test_a_tool_leaves_what_it_has_cut_without_touching(
     x: int, y: int, radius: int, along: int, cell: float
 ) -> None:

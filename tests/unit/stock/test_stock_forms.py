@@ -121,6 +121,7 @@ def test_wrong_forms_are_refused(text: str, wrong: str) -> None:
         (b"solid x\nvertex 1 2 a\nvertex 1 2 3\nvertex 4 5 6\n", "no STL"),
         (b"solid x\nvertex 1 2 nan\nvertex 1 2 3\nvertex 4 5 6\n", "wrong numbers"),
         (b"solid x\nvertex 1 2 7\nvertex 1 8 3\nvertex 4 5 6\n", "is open"),
+        (b"\0" * 80 + b"\x01\0\0\0" + b"\0" * 12 + b"\0\0\x80\x4b" * 9 + b"\0\0", "reaches 1.67772e\\+07 mm"),
         (b"\0" * 80 + b"\xff\xff\xff\xff" + b"\0" * 50, "4,294,967,295 triangles"),
     ],
 )
@@ -129,6 +130,20 @@ def test_wrong_files_are_refused(tmp_path: Path, content: bytes, wrong: str) -> 
     file.write_bytes(content)
     with pytest.raises(UsageError, match=wrong):
         Form(str(file)).body(circle(), TOOLS)
+
+
+def test_a_large_file_is_refused_before_it_is_read(tmp_path: Path) -> None:
+    """Ten million triangles, and as much text, with nothing in them: holes take no room on a disk."""
+    large = tmp_path / "large.stl"
+    for head, size, wrong in (
+        (b"\0" * 80 + (10_000_000).to_bytes(4, "little"), 84 + 50 * 10_000_000, "10,000,000 triangles"),
+        (b"solid part\n" + b" " * 80, 300_000_000, "300,000,000 bytes and is no binary"),
+    ):
+        with large.open("wb") as file:
+            file.write(head)
+            file.truncate(size)
+        with pytest.raises(UsageError, match=wrong):
+            Form(str(large)).body(circle(), TOOLS)
 
 
 @pytest.mark.skipif(not Path("/dev/zero").exists(), reason="this system has no endless device")
@@ -164,6 +179,7 @@ def test_a_body_inside_out_is_refused(tmp_path: Path) -> None:
         ("Outline, end mill 10 mm, two depths", Tool(ToolKind.FLAT, 10.0)),
         ("Four holes, drill 5.5 mm, chip breaking", Tool(ToolKind.DRILL, 5.5, angle_deg=118.0)),
         ("T7 V-Bit 90 deg 12 mm", Tool(ToolKind.CHAMFER, 12.0, angle_deg=90.0)),
+        ("T8 D=6. - left hand end mill", Tool(ToolKind.FLAT, 6.0, left_hand=True)),
         ('1/4 inch end mill 0.25"', Tool(ToolKind.FLAT, 6.35)),
         ("Four holes of 6.6 mm through the corners", Tool(ToolKind.DRILL, 6.6, angle_deg=118.0)),
         ("Hole, end mill 8 mm on a helix", Tool(ToolKind.FLAT, 8.0)),

@@ -13,8 +13,8 @@ from typer.testing import CliRunner
 from polycnc import runner
 from polycnc.cli._app import app
 from polycnc.errors import UsageError
-from polycnc.machine import ToolConfig, load_machine
-from polycnc.stock import ContactKind, Form, Tool, ToolKind
+from polycnc.machine import ToolConfig, load_machine, parse_machine, preset_text
+from polycnc.stock import ContactKind, Form, Stock, Tool, ToolKind
 
 BRACKET = Path(__file__).resolve().parents[3] / "examples" / "bracket.nc"
 PLATE = """(T1 D=10. CR=0. - flat end mill)
@@ -42,6 +42,11 @@ def machined(
     runner.run(text, config, "fanuc", tagged_rows=collector.add, check=False)
     found = tools if tools is not None else runner.tools_of(config, collector.texts)
     return collector.machined(Form(form, 0.25), found)
+
+
+def solid(found: runner.Machined) -> Stock:
+    assert isinstance(found.stock, Stock)
+    return found.stock
 
 
 def test_two_slots_in_a_plate() -> None:
@@ -101,8 +106,8 @@ def test_another_work_offset_cuts_elsewhere() -> None:
     runner.run(text, config, "fanuc", tagged_rows=collector.add, check=False)
     found = collector.machined(Form("box=0,0,-20,60,42,0", 0.25), TOOLS)
     assert found.volume_mm3 == pytest.approx(2 * 60.0 * 10.0 * 4.0, rel=0.01)
-    assert found.stock.height(30.0, 30.0) == -4.0
-    assert found.stock.height(30.0, 36.0) == 0.0
+    assert solid(found).height(30.0, 30.0) == -4.0
+    assert solid(found).height(30.0, 36.0) == 0.0
 
 
 def test_the_bracket() -> None:
@@ -111,13 +116,13 @@ def test_the_bracket() -> None:
     collector = runner.MachiningCollector(config)
     runner.run(BRACKET, config, tagged_rows=collector.add)
     found = collector.machined(Form("box=0,0,-12,90,60,0", 0.1), runner.tools_of(config, collector.texts))
-    assert found.stock.height(45.0, 30.0) == -6.0
+    assert solid(found).height(45.0, 30.0) == -6.0
     pocket = math.pi * 16.0**2 * 6.0
     by_line = {found.blocks[n].line: v for n, v in enumerate(found.removed_mm3.tolist()) if v > 0.0}
     in_pocket = sum(v for line, v in by_line.items() if found.blocks.names and 20 <= line <= 27)
     assert in_pocket == pytest.approx(pocket, rel=0.02)
     assert found.collisions == []
-    assert found.stock.height(10.0, 10.0) == -12.0  # a hole through a corner
+    assert solid(found).height(10.0, 10.0) == -12.0  # a hole through a corner
     assert found.messages[1:] == []
 
 
@@ -142,7 +147,7 @@ def test_a_longer_tool_does_not_come_along_the_way_of_the_one_before() -> None:
     found = collector.machined(Form("box=0,0,-20,60,42,0", 0.25), tools)
     assert found.collisions == []
     assert found.by_tool_mm3[1] == pytest.approx(2 * 60.0 * 10.0 * 4.0, rel=0.01)
-    assert found.stock.height(30.0, 21.0) == 0.0
+    assert solid(found).height(30.0, 21.0) == 0.0
 
 
 def test_the_length_of_another_tool_is_a_crash() -> None:
@@ -200,9 +205,9 @@ def test_the_command_reports_stock_as_its_schema_says(tmp_path: Path, text: str,
     assert [each["kind"] for each in printed["stock"]["collisions"]] == ["spindle", "spindle"][: 2 * status]
 
 
-def test_a_lathe_is_refused() -> None:
-    with pytest.raises(UsageError, match="has no axis Y"):
-        runner.MachiningCollector(load_machine("lathe2"))
+def test_a_machine_without_z_is_refused() -> None:
+    with pytest.raises(UsageError, match="has no axis Z"):
+        runner.MachiningCollector(parse_machine(preset_text("lathe2").replace('"Z"', '"W"'), "w.toml"))
 
 
 def test_a_program_that_cuts_nothing_tells_no_stock() -> None:

@@ -10,6 +10,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from polycnc.stock import Box, Cutting, Rows, Stock, Tool, ToolKind
+from polycnc.stock._sweep import _steps
+from support.often import share
 
 TOOLS = {
     "flat": Tool(ToolKind.FLAT, 8.0),
@@ -76,7 +78,7 @@ def test_a_drilled_hole_through_the_body_ends_at_its_bottom() -> None:
 coordinates = st.tuples(st.floats(2.0, 50.0), st.floats(2.0, 34.0), st.floats(-9.0, 1.0))
 
 
-@settings(max_examples=60)
+@settings(max_examples=share(60))
 @given(name=st.sampled_from(sorted(TOOLS)), begin=coordinates, end=coordinates)
 def test_a_way_leaves_what_the_tool_leaves_at_all_of_its_places(
     name: str, begin: tuple[float, float, float], end: tuple[float, float, float]
@@ -110,7 +112,7 @@ def test_a_way_leaves_what_the_tool_leaves_at_all_of_its_places(
     places=st.lists(coordinates, min_size=3, max_size=6),
     at=st.integers(1, 4),
 )
-@settings(max_examples=40)
+@settings(max_examples=share(40))
 def test_a_record_may_be_cut_anywhere(name: str, places: list[tuple[float, float, float]], at: int) -> None:
     whole, parts = Cutting(block_of(0.5), {1: TOOLS[name]}), Cutting(block_of(0.5), {1: TOOLS[name]})
     piece = rows(places)
@@ -130,3 +132,15 @@ def test_the_surface_is_closed_and_has_the_volume_of_the_body() -> None:
     _, uses = np.unique(edges, axis=0, return_counts=True)
     assert np.all(uses % 2 == 0)
     assert surface.volume_mm3 == pytest.approx(stock.volume_mm3, rel=2e-3)
+
+
+def test_steps_count_the_cells_that_lie_within_reach_of_the_ways() -> None:
+    """A way of 8 mm with a cutter of 3 mm and no holder, twice; cells outside of the body cost nothing."""
+    grid = Stock(Box((0.0, 0.0, -5.0), (40.0, 20.0, 0.0)), 0.1).grid
+    rows = Tool(ToolKind.FLAT, 6.0).cutting_profile().rows
+    inside = np.array([[10.0, 9.0, -1.0], [18.0, 9.0, -1.0]])
+    cells = 14.0 * 6.0 / 0.01
+    assert _steps(grid, inside, rows, rows[:0]) == pytest.approx(cells / 5, rel=0.01)
+    assert _steps(grid, inside, rows, rows) == pytest.approx(2 * cells / 5, rel=0.01)
+    assert _steps(grid, inside + (100.0, 0.0, 0.0), rows, rows[:0]) == 2
+    assert _steps(grid, inside + (23.0, 0.0, 0.0), rows, rows[:0]) == pytest.approx(10 * 6 / 0.05, rel=0.01)

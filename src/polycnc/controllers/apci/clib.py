@@ -44,6 +44,7 @@ MCUG3 = CLibrary(
     failed=UNKNOWN_ERROR,
     opens=frozenset(("InitMcuSystem", "InitMcuSystem2", "InitMcuSystem3")),
     in_bytes=False,
+    basic=True,
     declarations="typedef void(PC_CALL *InterruptRoutine)(int lines);\n",
     helpers=_HELPERS,
     extents={

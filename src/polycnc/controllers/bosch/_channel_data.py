@@ -59,7 +59,7 @@ class ChannelData:
         """Return what SD and SDR read now."""
         run, axes = self.run, self._axes
         state = run.channel.state
-        programmed, executed = self.programmed(), run.modal
+        programmed, executed = self.programmed(), run.reading.modal
         once = programmed.placement.once
         override, rpm = self._channels.spindle()
         overrides = {_SPINDLE: override * 100.0}
@@ -73,7 +73,7 @@ class ChannelData:
             programmed=_later(lambda: self._moment(programmed)),
             active=_later(lambda: self._moment(turning)),
             block_function=0 if once in _GROUP_OF else once,
-            feed_override=run.feed_override * 100.0,
+            feed_override=run.overrides.feed * 100.0,
             rapid=max((axis.vmax * 60.0 for axis in config.axes if axis.unit == "mm"), default=0.0)
             / (25.4 if programmed.inch else 1.0),
             spindle_overrides=overrides,
@@ -81,15 +81,17 @@ class ChannelData:
             probe_missing=probe is not None and probe.position is None,
             machining_mode=self._machining_mode(),
             language=self._language,
-            test_without_motion=run.machine_lock,
+            test_without_motion=run.switches.machine_lock,
             axis_names=dict(zip(axes.names, axes.numbers, strict=True)),
             logical_names=axes.logical_names(),
-            search_positions=dict(enumerate(self._by_axis(run.searched or (), state.modal.scale), 1)),
+            search_positions=dict(
+                enumerate(self._by_axis(run.selection.searched or (), state.modal.scale), 1)
+            ),
             machining_axes=frozenset(range(1, len(axes.channels[self._number]) + 1)),
         )
 
     def _machining_mode(self) -> int:
-        mode = _SINGLE_BLOCK if self.run.single_block else _AUTOMATIC
+        mode = _SINGLE_BLOCK if self.run.switches.single_block else _AUTOMATIC
         if self.run.channel.seeking:
             return _SEARCH + mode
         return _PROGRAM_BLOCK if self._channels.mode(self._number) is Mode.PROGRAM_BLOCK else mode

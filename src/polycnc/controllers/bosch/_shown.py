@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
-from typing import Protocol
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from typing import Any, Protocol
 
 import numpy as np
 
@@ -69,8 +69,58 @@ class Programs(Protocol):
         """Whether all blocks that were buffered have been taken, and more may come."""
 
 
+class _Axes(dict[int, Axis]):
+    """Axes, each read when somebody asks for it first."""
+
+    def __init__(self, numbers: Iterable[int], read: Callable[[int], Axis]) -> None:
+        super().__init__((number, Axis(number, "")) for number in numbers)
+        self._read = read
+        self._old = set(self)
+
+    def renew(self) -> None:
+        """Let each be read anew."""
+        self._old = set(self)
+
+    def __getitem__(self, number: int) -> Axis:
+        if number in self._old:
+            self._old.discard(number)
+            self[number] = self._read(number)
+        return super().__getitem__(number)
+
+    def get(self, number: int, default: Any = None) -> Any:
+        if number not in self:
+            return default
+        return self[number]
+
+    def values(self) -> Any:
+        return [self[number] for number in self]
+
+
+class _Coordinates(Sequence[Coordinate]):
+    """The coordinates of a channel, read when somebody asks for one first."""
+
+    def __init__(self, read: Callable[[], list[Coordinate]]) -> None:
+        self._read = read
+        self._found: list[Coordinate] | None = None
+
+    @property
+    def _all(self) -> list[Coordinate]:
+        if self._found is None:
+            self._found = self._read()
+        return self._found
+
+    def __getitem__(self, place: Any) -> Any:
+        return self._all[place]
+
+    def __len__(self) -> int:
+        return len(self._all)
+
+
 class Shown:
-    """Keep an image up to date: `renew` reads axes, channels and the spindle at the present cycle."""
+    """Keep an image up to date: `renew` reads channels and the spindle at the present cycle.
+
+    Axes and coordinates are read in that cycle too, where somebody asks for them.
+    """
 
     def __init__(
         self,
@@ -86,7 +136,10 @@ class Shown:
         self._data = data
         self._tables = tables
         self._tags: dict[int, int] = {}
-        self.image = Image(channels={number: Channel(number) for number in axes.channels})
+        self._now: Mapping[str, AxisStatus] | None = None
+        self._blocks: dict[int, tuple[ModalWords, list[float]]] = {}
+        self._read = _Axes(axes.numbers, self._axis_now)
+        self.image = Image(axes=self._read, channels={number: Channel(number) for number in axes.channels})
 
     def renew(self) -> Image:
         """Read everything at the present cycle."""
@@ -94,16 +147,22 @@ class Shown:
         image.cycle = machine.clock.cycles
         image.drives, image.all_channels = len(self._axes.numbers), len(image.channels)
         image.interface_channels = _INTERFACE_CHANNELS
-        axes = self._channels.axes()
-        for index, number in enumerate(self._axes.numbers):
-            image.axes[number] = self._axis(machine, index, number, axes[self._axes.names[index]])
+        self._read.renew()
+        self._now = None
+        self._blocks.clear()
         for number, shown in image.channels.items():
             self._channel(shown, number)
         image.spindles[1] = self._spindle(machine)
         image.test_mode = any(
-            run is not None and run.machine_lock for run in map(self._channels.run, image.channels)
+            run is not None and run.switches.machine_lock for run in map(self._channels.run, image.channels)
         )
         return image
+
+    def _axis_now(self, number: int) -> Axis:
+        if self._now is None:
+            self._now = self._channels.axes()
+        index = self._axes.index(number)
+        return self._axis(self._channels.machine, index, number, self._now[self._axes.names[index]])
 
     def _axis(self, machine: Machine, index: int, number: int, now: AxisStatus) -> Axis:
         axes, config = self._axes, machine.config.axes[index]
@@ -128,7 +187,7 @@ class Shown:
             shown.axis_coordinate = setpoint
             return shown
         assert channel is not None
-        words = self._words(run, channel)
+        words, ends = self._block(run, channel)
         shifts, _ = self._tables()
         works = [
             sum(shifts.shift_mm(code).get(name, 0.0) for code in group if f"G{code}" in words.work)
@@ -140,17 +199,23 @@ class Shown:
         )
         shown.preset = -float(run.channel.state.coordinates.shift[index])
         shown.axis_coordinate = setpoint - shown.shift
-        shown.end = self._ends(run)[index] - shown.shift
+        shown.end = ends[index] - shown.shift
         return shown
+
+    def _block(self, run: ProgramRun, number: int) -> tuple[ModalWords, list[float]]:
+        """Return words and end of the executed block of a channel, found once in a cycle."""
+        if number not in self._blocks:
+            self._blocks[number] = self._words(run, number), self._ends(run)
+        return self._blocks[number]
 
     def _ends(self, run: ProgramRun) -> list[float]:
         """Return where the executed block ends (machine coordinates)."""
-        to_go = list(run.distance_to_go.values())
-        return [each + left for each, left in zip(run.position.values(), to_go, strict=True)]
+        to_go = list(run.reading.distance_to_go.values())
+        return [each + left for each, left in zip(run.reading.position.values(), to_go, strict=True)]
 
     def _words(self, run: ProgramRun, number: int) -> ModalWords:
         """Return the words of the executed block; before the first one what the program begins with."""
-        return self._data(number).programmed() if run.modal is None else run.modal
+        return self._data(number).programmed() if run.reading.modal is None else run.reading.modal
 
     def _channel(self, shown: Channel, number: int) -> None:
         run = self._channels.run(number)
@@ -165,9 +230,9 @@ class Shown:
             ]
             return
         row = run.machine.state.paths.row[run.path]
-        words = self._words(run, number)
-        if self._tags.get(number) != run.executed_tag:
-            self._tags[number] = run.executed_tag
+        words, _ = self._block(run, number)
+        if self._tags.get(number) != run.reading.tag:
+            self._tags[number] = run.reading.tag
             shown.blocks += 1
         self._state(shown, run, number)
         running = row["state"] == RUNNING
@@ -179,18 +244,18 @@ class Shown:
         segment = run.machine.state.seg.row[int(row["base"]) + int(row["head"]) % int(row["capacity"])]
         shown.dwell = bool(running and segment["kind"] == WAIT)
         moving = bool(running and not shown.dwell)
-        shown.feeds = _feeds(segment, row, run.feed_override) if moving else (0.0, 0.0, 0.0)
+        shown.feeds = _feeds(segment, row, run.overrides.feed) if moving else (0.0, 0.0, 0.0)
         shown.programmed_feed = words.feed * (25.4 if words.inch else 1.0)
-        shown.potentiometer = run.feed_override * _FULL
+        shown.potentiometer = run.overrides.feed * _FULL
         self._tool(shown, words)
         shown.other_waits = (shown.other_waits & Wait.DATA_SERVICE) | _WAITS.get(run.state, Wait(0))
         if self._waits(number):
             shown.other_waits |= Wait.SIGNAL_OR_TIME
-        shown.optional_stop = (run.optional_stop, run.optional_stop)
-        shown.skip = (bool(run.block_delete), bool(run.block_delete))
+        shown.optional_stop = (run.switches.optional_stop, run.switches.optional_stop)
+        shown.skip = (bool(run.switches.block_delete), bool(run.switches.block_delete))
         if shown.sav is Sav.ACTIVE and not running and self._buffer_empty(number):
             shown.sav = Sav.BUFFER_EMPTY
-        shown.coordinates = self._coordinates(run, number)
+        shown.coordinates = _Coordinates(lambda: self._coordinates(run, number))
 
     def _select(self, shown: Channel, number: int) -> None:
         """Show what is selected."""
@@ -243,9 +308,9 @@ class Shown:
     def _coordinates(self, run: ProgramRun, number: int) -> list[Coordinate]:
         axes, state = self._axes, run.machine.state
         now = workpiece(run, state.setpoint)
-        ends = self._ends(run)
+        _, ends = self._block(run, number)
         end_at = workpiece(run, np.array(ends))
-        to_go = list(run.distance_to_go.values())
+        to_go = list(run.reading.distance_to_go.values())
         config = run.machine.config.axes
         found = []
         for each in axes.channels[number]:
@@ -268,7 +333,7 @@ class Shown:
         top = machine.config.spindle.max_rpm
         if run is None:
             return Spindle(limits=(0.0, top), gear_limits=(0.0, top))
-        words = run.modal
+        words = run.reading.modal
         speed = 0.0 if words is None else words.speed
         direction = 0 if words is None else words.spindle_direction
         override, rpm = self._channels.spindle()

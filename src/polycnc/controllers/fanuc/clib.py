@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from polycnc.controllers.fanuc import fwlib
+from polycnc.controllers.fanuc.library._modal import is_of_groups
 from polycnc.controllers.fanuc.library._structs import HEADER
 from polycnc.controllers.library.clib import CLibrary
 
@@ -22,6 +23,8 @@ FWLIB = CLibrary(
     opens=frozenset(("cnc_allclibhndl", "cnc_allclibhndl2")),
     opens_at="cnc_allclibhndl3",
     frees="cnc_freelibhndl",
+    packings=frozenset({4}),
+    selected={"ODBMDL": lambda record: "g_rdata" if is_of_groups(record.datano) else "raux1"},
     extents={
         # The length counts the characters; two numbers stand before them.
         ("cnc_upload", "upld"): "(number ? 4 + *number : 0)",

@@ -303,8 +303,23 @@ def variant(cls: K, **counts: int) -> K:
     return lay_out(cls.__name__, issubclass(cls, ctypes.Union), varied, variant_of=cls)  # type: ignore[no-any-return]
 
 
+@lru_cache
+def repacked(cls: K, pack: int) -> K:
+    """Return a structure with the same elements, packed otherwise, what is inside too; it is a kind of `cls`."""
+    table: Table = cls._table_  # type: ignore[attr-defined]
+    elements = {
+        name: replace(each, ctype=(inner := repacked(each.ctype, pack)), python=inner)
+        if hasattr(each.ctype, "_table_")
+        else each
+        for name, each in table.elements.items()
+    }
+    kind = getattr(cls, "variant_of", cls)
+    made = replace(table, elements=elements, pack=pack)
+    return lay_out(cls.__name__, issubclass(cls, ctypes.Union), made, variant_of=kind)  # type: ignore[no-any-return]
+
+
 # fmt: off
 __all__ = [
-    "Element", "Field", "Layout", "Structure", "Table", "Union", "lay_out", "layout", "layouts", "variant",
+    "Element", "Field", "Layout", "Structure", "Table", "Union", "lay_out", "layout", "layouts", "repacked", "variant",
 ]
 # fmt: on

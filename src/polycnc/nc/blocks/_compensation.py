@@ -56,10 +56,15 @@ class _Mode(Enum):
 
 
 class Leads(NamedTuple):
-    """Say whether the lead-in may be an arc, and whether any straight move after the cancellation is the lead-out."""
+    """Say how compensation begins and ends.
+
+    The lead-in may be an arc; any straight move after the cancellation is the lead-out; a straight lead-in ends
+    beside its own end, and the corner after it is one like others.
+    """
 
     by_arc: bool = False
     leaves_at_once: bool = False
+    beside_itself: bool = False
 
 
 _STRAIGHT = Leads()
@@ -298,7 +303,10 @@ class RadiusCompensation:
         self._mode = _Mode.ON
         if self._offset == 0.0:
             return [item]
-        self._move, self._leg, self._pending, self._lead_in = item, leg, True, True
+        beside = self._leads.beside_itself
+        if beside and leg_length(leg) <= abs(self._offset):
+            raise refusal("lead_in_short", item.line, tool=abs(self._offset))
+        self._move, self._leg, self._pending, self._lead_in = item, leg, True, not beside
         self._at = leg.x0, leg.y0
         return []
 
@@ -306,8 +314,7 @@ class RadiusCompensation:
         """Begin with an arc from where the tool is to beside the end of an arc, in its direction there."""
         at = leg.x0, leg.y0
         bent = _bent(leg, at, self._offset, item.line)
-        self._mode = _Mode.ON
-        self._at = at
+        self._mode, self._at = _Mode.ON, at
         self._move = replace(item, center=(bent.cx, bent.cy), sweep_rad=bent.sweep_rad)
         self._leg, self._pending, self._lead_in = bent, True, False
 

@@ -19,6 +19,10 @@ _REFUSALS = {
         "the arc that radius compensation starts with has no place for the tool",
         "Make it larger, or start with a straight move.",
     ),
+    "lead_in_short": (
+        "the move that radius compensation starts with is not longer than the tool radius {tool:.6g} mm",
+        "Start from farther off.",
+    ),
     "lead_out_arc": (
         "radius compensation ends with an arc",
         "Make the first plane move after G40 a straight one.",

@@ -198,7 +198,12 @@ def _repeats(block: BlockContext, is_back_bore: bool) -> int:
     found: list[Word] = [word for each in letters if (word := block.words.take(each))]
     if len(found) > 1:
         raise block.problem("L and K both say how many holes to drill", "Write one of them.", found[1])
-    return whole_number(found[0], "a number of holes", block.problem, MOST_HOLES) if found else 1
+    if not found:
+        return 1
+    count = whole_number(found[0], "a number of holes", block.problem, MOST_HOLES)
+    if count == 0 and not block.dialect.cycles.no_hole:
+        raise block.problem("a cycle that drills no hole", "Use 1 or more, or leave the block out.", found[0])
+    return count
 
 
 def _items(

@@ -13,7 +13,14 @@ from polycnc.nc.blocks._moves import Feed, Line, QueueItem, Stop, Wait
 from polycnc.nc.blocks._probe import Probe
 from polycnc.nc.blocks._words import GWord, whole_number
 from polycnc.nc.modal._actions import Action
-from polycnc.nc.modal._modal import FEED_INVERSE_TIME, FEED_MODE, MOTION, MOTION_LINEAR, MOTION_RAPID
+from polycnc.nc.modal._modal import (
+    ABSOLUTE,
+    FEED_INVERSE_TIME,
+    FEED_MODE,
+    MOTION,
+    MOTION_LINEAR,
+    MOTION_RAPID,
+)
 
 REFERENCE_POSITIONS = 4
 PROBES = {
@@ -203,5 +210,7 @@ def move_in_machine_coordinates(block: BlockContext, g: GWord) -> list[Line]:
     in_force = block.after.modal.whole[MOTION]
     if in_force not in (MOTION_RAPID, MOTION_LINEAR) or block.after.cycle.action:
         raise block.problem(f"G{g.code} goes with G0 or G1 only", "Write G0 or G1 in this block.", g.word)
+    if not block.dialect.machine_coordinates_in_g91 and not block.after.modal.whole[ABSOLUTE]:
+        raise block.problem(f"G{g.code} with incremental positions (G91)", "Select G90 first.", g.word)
     end = motion.target(block, motion.axis_words(block), machine_coordinates=True)
     return [motion.line(block, end, bool(in_force == MOTION_RAPID))]

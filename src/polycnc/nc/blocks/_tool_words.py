@@ -97,7 +97,11 @@ def compensate_radius(block: BlockContext) -> None:
             radius,
             plane,
             block.line,
-            Leads(block.dialect.lead_in_by_arc, block.dialect.leads_out_at_once),
+            Leads(
+                block.dialect.lead_in_by_arc,
+                block.dialect.leads_out_at_once,
+                block.dialect.lead_in_beside_itself,
+            ),
         )
         if tip != state.tip.vector:
             state.tip = TipShift(tip)

@@ -85,14 +85,14 @@ class Preparation:
                 if not self._next_piece():
                     return
                 continue
-            reason, first, tail = NOT_PLAIN, reader.blocks, prepared.row["tail"]
+            reason, first, tail = NOT_PLAIN, reader.blocks, int(prepared.row["tail"])
             if compiled and reader.blocks >= self._options.ordinary_blocks and prepared.is_plain:
                 reason = reader.take_plain(self._calls.running, self._calls.stack, most, prepared)
             if reason == QUEUE_FULL:
                 return
             if reason == NOT_PLAIN:
                 self._ordinary_block()
-            least = 1 if prepared.row["tail"] != tail else BARREN_TURNS
+            least = 1 if prepared.takes_time(tail) else BARREN_TURNS
             turns.take(max(least, (reader.blocks - first) // PLAIN_PER_TURN))
 
     def _next_piece(self) -> bool:
@@ -128,9 +128,9 @@ class Preparation:
             if item is Pause.PAUSE:
                 self.turns.pause()
                 return False
-            tail = self._prepared.row["tail"]
+            tail = int(self._prepared.row["tail"])
             self._source_item(item)
-            barren = not isinstance(item, TextSpan) and self._prepared.row["tail"] == tail
+            barren = not isinstance(item, TextSpan) and not self._prepared.takes_time(tail)
             self.turns.take(BARREN_TURNS if barren else 1)
             if isinstance(item, Drain) and not self._search.active:
                 self.turns.look(self._reader.text.name, item.line)

@@ -6,7 +6,7 @@ from collections import deque
 from collections.abc import Sequence
 from dataclasses import replace
 
-from polycnc.kernel import free_slots
+from polycnc.kernel import GEO_WAIT_S, WAIT, free_slots
 from polycnc.machine import Machine, MachineConfig
 from polycnc.nc.blocks._channel_state import ChannelState
 from polycnc.nc.blocks._events import EventRun
@@ -24,6 +24,7 @@ from polycnc.nc.records._replay import Feeds, RunBegin, coolant_after
 from polycnc.nc.text._program import ProgramText
 from polycnc.nc.text._scan import ScanRules, WordColumns
 
+_LOOKED_AT = 8
 CHUNK_BLOCKS = 1 << 14  # blocks of a text that are scanned, and prepared by the compiled kernel, together
 
 
@@ -81,6 +82,16 @@ class Prepared:
         """Tell whether blocks may be prepared: nothing waits for room, and no stop for its execution."""
         writer = self.writer
         return not writer.backlog and not writer.stops and free_slots(writer.paths, self._path) > RESERVE
+
+    def takes_time(self, since: int) -> bool:
+        """Tell whether what has been queued since the queue had this end takes time: waits of no length take none."""
+        seg, row = self._kernel.seg, self.row
+        end = int(row["tail"])
+        for count in range(end - 1, max(since, end - _LOOKED_AT) - 1, -1):
+            k = row["base"] + count % row["capacity"]
+            if seg.row[k]["kind"] != WAIT or seg.geo[k, GEO_WAIT_S] > 0.0:
+                return True
+        return end - since > _LOOKED_AT
 
     @property
     def is_plain(self) -> bool:

@@ -11,8 +11,8 @@ from polycnc.machine import Clock
 
 TURNS_PER_CYCLE = 2000
 """Blocks with something for the queue that are prepared in one control cycle at the most."""
-BARREN_TURNS = 16
-"""What a block counts that leaves nothing in the queue, or a call: of such ones there are 125 in a cycle."""
+BARREN_TURNS = 50
+"""What a block counts that takes no time, or a call: of such ones there are 40 in a cycle."""
 PLAIN_PER_TURN = 64
 """Plain blocks that the compiled kernel prepares in the time of one turn."""
 

@@ -32,6 +32,7 @@ from polycnc.nc.cpl._syntax import (
 )
 from polycnc.nc.cpl._values import is_text, makes_text
 from polycnc.nc.cpl._variables import KIND_NAMES, Variable
+from polycnc.nc.text._silent import is_silent
 
 SLICE = 20_000
 """How much a program does, in assignments, before it lets time pass."""
@@ -87,7 +88,8 @@ class Compiler:
         self._stores.hot = bool(gotos)
         out = self._out
         out.divert()
-        Flow(out, self, rounds=SLICE, weigh=_work).write(statements, used=gotos)
+        flow = Flow(out, self, rounds=SLICE, weigh=_work, changes=lambda: self._stores.changes)
+        flow.write(statements, used=gotos)
         body = out.diverted()
         if self.flaws:
             return None
@@ -128,6 +130,7 @@ class Compiler:
 
     def statement(self, statement: Statement) -> None:
         """Write a statement that is no flow."""
+        self._stores.changes += not (isinstance(statement, NcLine) and _is_silent(self._source, statement))
         try:
             self._statement(statement)
         except Flaw as flaw:
@@ -138,6 +141,7 @@ class Compiler:
         if isinstance(structure, If):
             return
         self._stores.hot += not isinstance(structure, Case)
+        self._stores.changes += isinstance(structure, For)
         try:
             if isinstance(structure, For):
                 self._set(structure.counter, structure.start)
@@ -165,8 +169,9 @@ class Compiler:
 
     def end(self, loop: For | While | Repeat) -> str | None:
         """Write what a round ends with; return the condition of UNTIL."""
-        self._stores.hot -= 1
+        ends = None
         if isinstance(loop, For):
+            self._stores.changes += 1
             self._out.place = loop.at
             total: Expression = Chain(loop.at, loop.counter, (Link(loop.at, "+", _step(loop)),))
             try:
@@ -176,8 +181,9 @@ class Compiler:
         elif isinstance(loop, Repeat):
             assert loop.condition is not None
             self._out.place = loop.condition.at
-            return self._tested(loop.condition)
-        return None
+            ends = self._tested(loop.condition)
+        self._stores.hot -= 1
+        return ends
 
     def _tested(self, tree: Expression) -> str:
         return self._asked(lambda: self._values.condition(tree))
@@ -349,6 +355,10 @@ class Compiler:
             raise Flaw(word.at, f"the address {word.address} takes a number, not {KIND_NAMES[typed.kind]}")
         value = self._values.rounded(typed).text
         return f"BlockWord({word.address!r}, {word.index}, as_word({value}), {column})"
+
+
+def _is_silent(source: Source, lines: NcLine) -> bool:
+    return all(is_silent(source.line(each)) for each in range(lines.line, lines.last + 1))
 
 
 def _step(loop: For) -> Expression:

@@ -122,6 +122,18 @@ GROUPS: dict[str, tuple[Function, ...]] = {
 }
 """Every function and command, by what it is about."""
 
+STEADY = frozenset(
+    """
+    AXO CPOS CPROBE PPOS PROBE WPOS MPOS APOS SPOS COF DPC SCL FXC TC TDA MCA NCF SD SDR AXP IC PLC EOF FILEPOS FILESIZE
+    FILEACCESS FILEDATE GETERR
+    """.split()  # noqa: SIM905 (a list of words in quotes is no easier to read)
+)
+"""Functions that only read, and what they read stays as it is while axes stand and no other channel works."""
+TIMED = frozenset(
+    {"CLOCK", "DATE", "TIME", "IC", "PLC", "WPOS", "MPOS", "APOS", "SPOS", "SD", "SDR", "INKEY"}
+)
+"""Functions whose answers change with the control's cycles, if the program does nothing."""
+
 FUNCTIONS: dict[str, Function] = {row.name: row for rows in GROUPS.values() for row in rows}
 """Every function and command by its name."""
 OWN = {row.run.__name__: row.run for row in FUNCTIONS.values() if row.run is not None}

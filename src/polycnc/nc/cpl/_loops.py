@@ -6,17 +6,11 @@ from collections.abc import Callable, Iterable, Mapping, MutableMapping
 from typing import Any
 
 from polycnc.nc.cpl._fields import Field
+from polycnc.nc.cpl._functions import STEADY
 from polycnc.nc.cpl._host import Host
 from polycnc.nc.cpl._run import Execution
 from polycnc.nc.cpl._strings import CharacterField, Part
 
-STEADY = frozenset(
-    """
-    AXO CPOS CPROBE PPOS PROBE WPOS MPOS APOS SPOS COF DPC SCL FXC TC TDA MCA NCF SD SDR AXP IC PLC EOF FILEPOS FILESIZE
-    FILEACCESS FILEDATE GETERR
-    """.split()  # noqa: SIM905 (a list of words in quotes is no easier to read)
-)
-"""Functions that only read, and what they read stays as it is while axes stand and no other channel works."""
 _SIMPLE = (int, float, str, bool, type(None))
 
 

@@ -6,6 +6,7 @@ from collections.abc import Callable
 
 from polycnc.language import Emitter, Flaw, Python
 from polycnc.nc.cpl._faults import INVALID_ASSIGNMENT
+from polycnc.nc.cpl._functions import STEADY, TIMED
 from polycnc.nc.cpl._operators import Typed
 from polycnc.nc.cpl._reader import single
 from polycnc.nc.cpl._syntax import Dim, Expression, Name
@@ -13,6 +14,8 @@ from polycnc.nc.cpl._values import Values, is_text
 from polycnc.nc.cpl._variables import KIND_NAMES, Variable
 
 _NUMBER = "+-0123456789"
+_TIMED_WORK = 2000
+"""What asking for something that changes with time counts, in assignments: a cycle knows one answer."""
 _CONVERSIONS = {"I": "to_integer", "R": "to_real", "D": "to_double", "B": "to_boolean"}
 
 
@@ -29,6 +32,8 @@ class Stores:
         self.hosts: dict[str, tuple[str, int]] = {}
         self.values = Values(self.use, self.host, self._box, self.temporary)
         self.hot = 0
+        self.changes = 0
+        """How much has been written that changes something."""
         self._out = out
         self._pythons: dict[Variable, str] = {}
         self._boxes: list[tuple[str, Name]] = []
@@ -44,6 +49,10 @@ class Stores:
     def host(self, name: str, at: int, door: str = "function") -> str:
         python = f"{door}_{name.replace('#', '_n').replace('$', '_s')}"
         self.hosts.setdefault(python, (f"host.{door}({name!r})", at))
+        timed = name in TIMED and door == "function"
+        if timed and self.hot:
+            self._out.put(f"n -= {_TIMED_WORK}")
+        self.changes += not timed and (door == "setter" or name not in STEADY)
         return python
 
     def _box(self, name: Name) -> str:
@@ -68,6 +77,7 @@ class Stores:
             self._out.put(f"{python} = handed({variable.name!r}, {variable.kind!r}, {now})")
 
     def close_boxes(self, boxes: list[tuple[str, Name]]) -> None:
+        self.changes += len(boxes)
         for python, name in boxes:
             with self._out.block(f"if {python}.__class__ is Box and {python}.is_set:"):
                 self.store(name, Typed(Python(f"{python}.value"), "X", leaf=True))

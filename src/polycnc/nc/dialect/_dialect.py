@@ -154,6 +154,9 @@ class Cycles(StrictModel):
         description='What Q does in a tapping cycle: nothing, "chip_break" backs up, "retract" goes back to R.',
     )
     rigid_tap: bool = Field(default=False, description="Tapping cycles turn the spindle by themselves.")
+    no_hole: bool = Field(
+        default=True, description="L0 or K0 drills nothing and keeps the words for later blocks."
+    )
     repeats: tuple[Literal["L", "K"], ...] = Field(
         default=("L", "K"), description="Addresses that say how many holes a block drills."
     )
@@ -259,9 +262,17 @@ class Dialect(StrictModel):
         default=False,
         description="Without a tolerance (G64 without P) corners are rounded as far as a quarter of the shorter move.",
     )
+    machine_coordinates_in_g91: bool = Field(
+        default=True,
+        description="Moves in machine coordinates (G53) may stand where positions are incremental.",
+    )
     lead_in_by_arc: bool = Field(
         default=False,
         description="Radius compensation may start with an arc: from where the tool is to beside its end.",
+    )
+    lead_in_beside_itself: bool = Field(
+        default=False,
+        description="A straight lead-in ends beside its own end, and the corner after it is one like others.",
     )
     leads_out_at_once: bool = Field(
         default=False,

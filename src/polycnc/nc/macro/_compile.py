@@ -36,6 +36,7 @@ from polycnc.nc.macro._syntax import (
 )
 from polycnc.nc.macro._variables import LARGEST
 from polycnc.nc.sources._block_source import Drain, TextSpan
+from polycnc.nc.text._silent import is_silent
 
 ALARM, MESSAGE_STOP = 3000, 3006
 _ANGLES_AND_LENGTHS = "ABCIJKQRUVWXYZ"
@@ -93,7 +94,8 @@ class _Compiler:
         self._increment = increment
         self._code = Code(shape)
         self._out: Emitter[int] = Emitter(0)
-        self._flow = Flow(self._out, self, rounds=rounds)
+        self._changes = 0  # statements so far that change something
+        self._flow = Flow(self._out, self, rounds=rounds, changes=lambda: self._changes)
         self._values = Expressions(numbers)
         self._line = Line(0, 0, None, 0, ())
 
@@ -114,6 +116,7 @@ class _Compiler:
     def statement(self, part: Line | Span) -> None:
         """Write a line or a stretch of plain text."""
         if isinstance(part, Span):
+            self._changes += not is_silent(self._text[part.offset : part.end])
             self._span(part)
             return
         self._line = part
@@ -174,6 +177,7 @@ class _Compiler:
     def _statement(self, statement: Statement) -> None:
         out = self._out
         out.place = statement.at
+        self._changes += not isinstance(statement, If | Goto | Restart)
         match statement:
             case Assignment():
                 self._assignment(statement)

@@ -41,8 +41,8 @@ class MacroLanguage:
     changed. `variables` may be shared with whoever else reads and writes them, `system` are the control's own
     variables, `calls` the codes that call programs. With `nat` ASIN and ATAN give -90 to 90 and -180 to 180 degrees.
     With `main_repeats` M99 in the main program begins it anew instead of ending it. With `endless_loops` a loop may go
-    round without a block for ever; else that is an error after 50,000,000 rounds. It pauses after `pause_jumps` of
-    them.
+    round without a block for ever; else that is an error after 2,500 pauses. It pauses after `pause_jumps` rounds, and
+    after each that changes nothing.
     """
 
     def __init__(

@@ -280,12 +280,17 @@ class BlockRecords:
         found[:, 2] *= (MM_PER_INCH if inch else 1.0) / 60.0
         return found
 
-    def spindle_turns(self, tags: npt.NDArray[np.int64]) -> npt.NDArray[np.bool_]:
-        """Tell of each of some tags, which have one context, whether the spindle turns with its block."""
+    def spindle_turns(self, tags: npt.NDArray[np.int64]) -> npt.NDArray[np.float64]:
+        """Return S with the blocks of some tags, which have one context: below zero with M4, 0 where it is at rest.
+
+        A spindle that was started without S counts as 1.
+        """
         context = self._contexts.get(int(tags[0]) >> CONTEXT_SHIFT)
         if context is not None and context.speaks:
-            return np.not_equal(self.laser(tags)[:, 1], 0.0)
-        return np.full(len(tags), context is not None and context.modal.spindle.direction != 0)
+            speed, direction = self.laser(tags)[:, :2].T
+            return np.asarray(np.maximum(speed, 1.0) * direction, np.float64)
+        spindle = None if context is None else context.modal.spindle
+        return np.full(len(tags), 0.0 if spindle is None else max(spindle.speed, 1.0) * spindle.direction)
 
     def source(self, tag: int) -> ProgramText | None:
         """Return the text that the block of a tag stands in."""

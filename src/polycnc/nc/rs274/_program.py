@@ -27,6 +27,7 @@ from polycnc.nc.rs274._structure import (
     rows_of,
 )
 from polycnc.nc.text._program import ProgramText
+from polycnc.nc.text._silent import is_silent
 
 _PARAMETER = re.compile(r"#(?:<[^>]*>|[0-9]+)")
 _MOST_ARGUMENTS = 30
@@ -75,6 +76,7 @@ class _Writer:
         self._out: Emitter[int] = Emitter(0)
         self._loops: list[tuple[str, int, bool]] = []  # label, number, whether it is a REPEAT
         self._numbers = 0
+        self._changes = 0  # lines so far that change something
         self._crossed: set[int] = set()
         self._in_sub = False
 
@@ -105,6 +107,8 @@ class _Writer:
     def _items(self, items: list[Item]) -> None:
         for item in items:
             if isinstance(item, Span):
+                text = self._text.content[item.begin.offset : item.end]
+                self._changes += not is_silent(text.decode("latin-1"))
                 self._at(item.begin)
                 self._out.put(f"yield span({item.begin.offset}, {item.begin.number}, {item.end})")
             elif isinstance(item, Block):
@@ -122,6 +126,7 @@ class _Writer:
 
     def _statement(self, row: Row, line: Line) -> None:
         put = self._out.put
+        self._changes += 1
         for text in self._texts(row, line):
             put(f"yield says({row.number}, {row.offset}, {text})")
         codes = {code.python for letter, code, _ in line.words if letter == "M"}
@@ -307,6 +312,7 @@ class _Writer:
             self._out.put(f"{first} = True")
             head = f"while {first} or ({_condition(block.end_row, block.end)}):"
         self._loops.append((block.word.label, number, keyword == "repeat"))
+        changes = self._changes
         with self._out.block(head):
             if first:
                 self._out.put(f"{first} = False")
@@ -316,6 +322,8 @@ class _Writer:
             with self._out.block("if c < 0:"):
                 self._out.put("yield PAUSE", f"c = {PAUSE_ROUNDS}")
             self._items(block.bodies[0][2])
+            if self._changes == changes and not rounds:
+                self._out.put("c = 0")  # it waits: a round more is one of the next cycle
         self._loops.pop()
         if number in self._crossed:
             self._pass_on()

@@ -36,6 +36,7 @@ class SavedProgram:
     pauses: int
     over: bool
     back: tuple[tuple[tuple[tuple[str, float, int], ...], int, int, tuple[Call, ...]], ...]
+    calls: int
 
 
 @dataclass(frozen=True, slots=True)

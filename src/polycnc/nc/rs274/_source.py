@@ -32,6 +32,7 @@ from polycnc.nc.text._scan_plain import Word
 MOST_LEVELS = 10
 """How deep calls may be nested. Source: LinuxCNC `interp_internal.hh`, INTERP_SUB_ROUTINE_LEVELS."""
 LONGEST_LOOP_PAUSES = 2_500
+_PAUSE_CALLS = 100
 _LARGEST = 1e12
 _PARAMETERS = ("L", "N")
 _PROBLEMS = (NumberError, KeyError, OverflowError, ValueError, UsageError)
@@ -143,6 +144,7 @@ class RunningProgram:
         }
         self._functions: dict[int, tuple[Traced[int], Function]] = {}
         self._pauses = 0
+        self._calls = 0  # without a block since the last pause
         self._over = False
         self._levels: list[_Level] = []
         self._back: list[WordsBlock] = []
@@ -180,9 +182,13 @@ class RunningProgram:
                 return Pause.PAUSE
             if isinstance(item, CallRequest):
                 self._enter(item)
+                self._calls += 1
+                if self._calls >= _PAUSE_CALLS:
+                    item = Pause.PAUSE
             elif isinstance(item, ModesRequest):
                 self._keep(item)
         self._pauses = self._pauses + 1 if item is Pause.PAUSE else 0
+        self._calls = 0
         if self._pauses > LONGEST_LOOP_PAUSES:
             endless = NumberError("a loop goes round without a block", "Add what ends it.")
             try:
@@ -284,7 +290,7 @@ class RunningProgram:
             (tuple((w.letter, w.value, w.place) for w in each.words), each.line, each.offset, each.calls)
             for each in self._back
         )
-        return SavedProgram(levels, self._pauses, self._over, back)
+        return SavedProgram(levels, self._pauses, self._over, back, self._calls)
 
     def go_to(
         self, saved: SavedProgram, codes: Sequence[tuple[Program, Traced[int] | None]]
@@ -305,7 +311,7 @@ class RunningProgram:
             if traced is not None and traced is not program.functions[level.label]:
                 made.run = traced.load(self._names)["program"](made.numbered, made.named, level.names)
                 next(made.run)
-        self._pauses, self._over = saved.pauses, saved.over
+        self._pauses, self._over, self._calls = saved.pauses, saved.over, saved.calls
         text = self._levels[-1].program.text
         self._back = [
             WordsBlock(tuple(Word(*each, True) for each in words), line, offset, text=text, calls=calls)

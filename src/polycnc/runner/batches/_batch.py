@@ -98,6 +98,9 @@ def batch(
     client: Any = None,
     patterns: Sequence[str] = (),
     root: str | Path | None = None,
+    stock: str | None = None,
+    resolution_mm: float | None = None,
+    fixtures: Sequence[str] = (),
     timeout_s: float = 600.0,
     memory_mb: float = 4096.0,
     done: str | Path | None = None,
@@ -112,6 +115,9 @@ def batch(
     is a file that keeps what is done: a program that is unchanged, as are machine, options and polycnc itself, is not
     run again. `progress` gets how many are done, of how many.
 
+    With `stock`, `resolution_mm` and `fixtures` (as in `run`, but no files) the tools of each program cut it: a
+    collision is an error, and `removed_mm3` is in its report.
+
     Programs with a language that reads and writes files (CPL) run on a copy of `root`, their folder if absent; what
     they write is thrown away.
 
@@ -120,7 +126,16 @@ def batch(
         BatchError: no process can be started.
     """
     limits = _limits(timeout_s, memory_mb)
-    setups = setups_of(machine, dialect, sweep or {}, check_only=check_only, detail=detail)
+    setups = setups_of(
+        machine,
+        dialect,
+        sweep or {},
+        check_only=check_only,
+        detail=detail,
+        stock=stock,
+        resolution_mm=resolution_mm,
+        fixtures=fixtures,
+    )
     programs = find_programs([paths] if isinstance(paths, str | Path) else paths, patterns)
     if root is not None and not Path(root).is_dir():
         raise UsageError(f"no such folder: {root}", hint="Make it first; it holds the files of the control.")
@@ -263,4 +278,12 @@ def _read(path: Path) -> tuple[bytes, str]:
 def _plain(setup: Setup) -> tuple[object, ...]:
     """Return what tells a setup from others, the same in every process."""
     dialect = setup.dialect.model_dump_json() if isinstance(setup.dialect, Dialect) else setup.dialect
-    return (setup.machine.model_dump_json(), dialect, setup.override_percent, setup.check_only, setup.detail)
+    stock = setup.stock, setup.resolution_mm, setup.fixtures
+    return (
+        setup.machine.model_dump_json(),
+        dialect,
+        setup.override_percent,
+        setup.check_only,
+        setup.detail,
+        stock,
+    )

@@ -8,7 +8,7 @@ from __future__ import annotations
 import json
 import shutil
 import tempfile
-from dataclasses import asdict, dataclass, field, fields
+from dataclasses import asdict, dataclass, field, fields, replace
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -34,7 +34,8 @@ _MOST_ERRORS = 50  # of one program; the rest is counted
 class Setup:
     """On what programs are run, and how: one for each combination of a sweep.
 
-    With `detail` a report has the slowest blocks and a picture of the path, for which every cycle is looked at.
+    With `detail` a report has the slowest blocks and a picture of the path, for which every cycle is looked at. With
+    `stock` (no file) the tools cut it beside `fixtures`.
     """
 
     machine: MachineConfig
@@ -42,6 +43,9 @@ class Setup:
     override_percent: float = 100.0
     check_only: bool = False
     detail: bool = False
+    stock: str | None = None
+    resolution_mm: float | None = None
+    fixtures: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -80,6 +84,7 @@ class ProgramReport:
     top_feed_mm_min: float | None = None
     blocks: int | None = None
     cycles: int | None = None
+    removed_mm3: float | None = None
     errors: list[str] = field(default_factory=list)
     messages: list[str] = field(default_factory=list)
     tools: list[tuple[int, float, float]] = field(default_factory=list)
@@ -161,6 +166,8 @@ def report_of(job: Job, setup: Setup) -> ProgramReport:
 
 
 def _report(job: Job, setup: Setup, root: Path | None) -> ProgramReport:
+    from polycnc.stock import NoStockError
+
     text = ProgramText(job.name, job.content)
     report = blank_report(job, setup, "ok")
     if setup.check_only:
@@ -173,10 +180,22 @@ def _report(job: Job, setup: Setup, root: Path | None) -> ProgramReport:
         units = tuple(axis.unit for axis in setup.machine.axes)
         collector = TrackCollector(units, most=_THUMBNAIL_POINTS)
     override = setup.override_percent / 100.0
-    settings = RunSettings(setup.machine, setup.dialect, feed_override=override, root=root)
-    result = run_program(
-        text, settings, check=False, tagged_rows=None if collector is None else collector.add
+    settings = RunSettings(
+        setup.machine,
+        setup.dialect,
+        feed_override=override,
+        root=root,
+        stock=setup.stock,
+        resolution_mm=setup.resolution_mm,
+        fixtures=setup.fixtures,
     )
+    tagged = None if collector is None else collector.add
+    try:
+        result = run_program(text, settings, check=False, tagged_rows=tagged)
+    except NoStockError as error:  # that is no fault of the program
+        report = _report(job, replace(setup, stock=None, resolution_mm=None, fixtures=()), root)
+        report.messages.append(error.what)
+        return report
     _fill(report, result)
     if collector is not None:
         execution = collector.execution()
@@ -187,7 +206,7 @@ def _report(job: Job, setup: Setup, root: Path | None) -> ProgramReport:
 
 def _fill(report: ProgramReport, result: RunResult) -> None:
     report.dialect = result.dialect
-    report.status = "ok" if result.ok else "error"
+    report.status = "ok" if result.ok and not result.collisions else "error"
     report.time_s = result.time_s
     report.cutting_time_s = result.cutting_time_s
     report.rapid_time_s = result.rapid_time_s
@@ -197,7 +216,11 @@ def _fill(report: ProgramReport, result: RunResult) -> None:
     report.top_feed_mm_min = result.top_feed_mm_min
     report.blocks = result.blocks
     report.cycles = result.cycles
-    report.errors = _bounded([str(alarm) for alarm in result.alarms])
+    collisions = [
+        str(each) if each.position is None else f"{each.position}: {each}" for each in result.collisions
+    ]
+    report.errors = _bounded([*(str(alarm) for alarm in result.alarms), *collisions])
+    report.removed_mm3 = None if result.machined is None else result.removed_mm3
     report.messages = [
         (f"line {each.line}: " if each.line else "")
         + each.text

@@ -10,6 +10,7 @@ from pathlib import Path
 from polycnc.errors import UsageError
 from polycnc.machine import MachineConfig, load_machine
 from polycnc.nc import Dialect, load_dialect
+from polycnc.runner._settings import RunSettings
 from polycnc.runner.batches._job import Setup
 
 SWEEPS = ("override", "machine", "tolerance")
@@ -61,12 +62,21 @@ def setups_of(
     *,
     check_only: bool,
     detail: bool,
+    stock: str | None = None,
+    resolution_mm: float | None = None,
+    fixtures: Sequence[str] = (),
 ) -> list[Setup]:
     """Return every combination of what a sweep varies.
 
     Raises:
-        UsageError: no such sweep, machine or dialect, or a value that cannot be.
+        UsageError: no such sweep, machine or dialect, a value that cannot be, or stock from a file.
     """
+    for text in (stock or "", *fixtures):
+        if text.lower().endswith(".stl"):
+            raise UsageError(
+                f"'{text}' for a batch", hint="Give auto, a box or a cylinder: files are for one program."
+            )
+    RunSettings(stock=stock, resolution_mm=resolution_mm, fixtures=tuple(fixtures))  # refuses what cannot be
     unknown = set(sweep) - set(SWEEPS)
     if unknown:
         raise UsageError(f"'{min(unknown)}' cannot be swept", hint=f"Sweeps are: {', '.join(SWEEPS)}.")
@@ -85,6 +95,9 @@ def setups_of(
                 _override(override),
                 check_only=check_only,
                 detail=detail,
+                stock=stock,
+                resolution_mm=resolution_mm,
+                fixtures=tuple(fixtures),
             )
         )
     return found

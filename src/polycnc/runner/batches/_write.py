@@ -22,6 +22,7 @@ _NUMBERS = (
     "path_mm",
     "cutting_path_mm",
     "top_feed_mm_min",
+    "removed_mm3",
 )
 _COLUMNS = (
     "program",
@@ -42,6 +43,7 @@ _COLUMNS = (
     "top_feed_mm_min",
     "blocks",
     "cycles",
+    "removed_mm3",
 )
 
 

@@ -15,6 +15,7 @@ from polycnc.runner._outcome import RunOutcome, counted, time_text
 from polycnc.runner.plots._over_time import draw_positions, draw_speed
 from polycnc.runner.plots._paths import draw_legend, draw_perspective, draw_plan
 from polycnc.runner.plots._scene import Scene, scene
+from polycnc.runner.plots._solid import draw_solid
 from polycnc.runner.view._track import Track, TrackCollector
 
 if TYPE_CHECKING:
@@ -107,7 +108,11 @@ def _figure(result: RunOutcome, axes: tuple[tuple[str, str], ...], track: Track)
     if dimensions > 1:
         draw_plan(figure.add_subplot(grid[0, 0] if dimensions == 3 else grid[0, :]), shown)
         if dimensions == 3:
-            draw_perspective(figure.add_subplot(grid[0, 1], projection="3d"), shown)
+            axes_3d = figure.add_subplot(grid[0, 1], projection="3d")
+            if result.machined is None:
+                draw_perspective(axes_3d, shown)
+            else:
+                draw_solid(axes_3d, result.machined)
         draw_legend(figure, shown, result.operations)
     row = int(dimensions > 1)
     speed = figure.add_subplot(grid[row, :])

@@ -7,8 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from polycnc.runner._machining import Machined
-from polycnc.stock import Cutting
+from polycnc.errors import UsageError
+from polycnc.runner._machined import Machined
+from polycnc.stock import Cutting, Stock
 
 Floats = npt.NDArray[np.float64]
 Places = npt.NDArray[np.int32]
@@ -41,6 +42,8 @@ class Film:
 
 def film_of(machined: Machined) -> Film:
     """Return the film of a body that has been cut, with as many cells as a page can bear."""
+    if not isinstance(machined.stock, Stock):
+        raise UsageError("the page shows stock on three axes only", hint="Leave --stock out.")
     count = max(machined.stock.heights.shape)
     several = max(1, -(-count // MOST_ACROSS))
     while True:
@@ -52,7 +55,7 @@ def film_of(machined: Machined) -> Film:
 
 def _film(machined: Machined, several: int) -> Film | None:
     """Cut the body once more, step by step; None if that has more changes than a page can bear."""
-    course, tools = machined.course, machined.tools
+    course, tools = machined.course, machined.rotating
     stock = machined.form.body(course, tools)
     cutting, grid = Cutting(stock, tools), stock.grid
     level = max(stock.box.high[2] - grid.bottom, 1e-9) / _LEVELS

@@ -69,7 +69,8 @@ class Listing:
         alarms = [
             {
                 "kind": "alarm",
-                "text": alarm.text + (f" {alarm.hint}" if alarm.hint else ""),
+                "text": alarm.text,
+                "hint": alarm.hint,
                 "line": alarm.line,
                 "row": self.row_of(alarm.line, alarm.file or None),
                 "time_s": alarm.time_s,

@@ -14,10 +14,11 @@ from polycnc.machine import MachineConfig
 from polycnc.nc import ProgramText
 from polycnc.runner._blocks import KINDS
 from polycnc.runner._outcome import RunOutcome, counted, time_text
+from polycnc.runner._rotation import turning_axes
 from polycnc.runner.view._film import Film, film_of
 from polycnc.runner.view._listing import Listing
 from polycnc.runner.view._motion import DERIVATIVES
-from polycnc.runner.view._part_frame import turning_axes, with_part_frame
+from polycnc.runner.view._part_frame import with_part_frame
 from polycnc.runner.view._picture import Axes, columns_of, kinematics, places, tool_shapes, zero_of_work
 from polycnc.runner.view._track import Track
 from polycnc.web import Page
@@ -58,8 +59,12 @@ def page(
     beside: Beside | None = None,
     *,
     inch: bool | None = None,
+    rest: Track | None = None,
 ) -> str:
-    """Return the HTML of a view; `axes` are names and units, with `inch` lengths are shown so, else as programmed."""
+    """Return the HTML of a view; `axes` are names and units, with `inch` lengths are shown so, else as programmed.
+
+    `rest` is what could be read after an alarm.
+    """
     machine = result.config
     if machine is not None and [axis.name for axis in machine.axes] != [name for name, _ in axes]:
         machine = None
@@ -67,6 +72,9 @@ def page(
         track = with_part_frame(track, machine)
     listing = Listing(result, track, texts)
     columns = _columns(track, listing, axes, machine, beside)
+    if rest is not None:
+        columns["rest_tip"] = _single(places(rest, axes, machine if "tip" in columns else None))
+        columns["rest_rapid"] = rest.rapid.astype(np.uint8)
     zero, programmed_inch = zero_of_work(track, axes, machine)
     about = _about(result, axes, track, listing, beside)
     about |= {

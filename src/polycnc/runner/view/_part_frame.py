@@ -7,8 +7,8 @@ from dataclasses import replace
 import numpy as np
 import numpy.typing as npt
 
-from polycnc.machine import MachineConfig, RotaryAxis, ToolConfig
-from polycnc.runner._rotation import turned
+from polycnc.machine import MachineConfig, ToolConfig
+from polycnc.runner._rotation import tip_and_axis, turning_axes
 from polycnc.runner.view._track import Track
 
 Floats = npt.NDArray[np.float64]
@@ -16,15 +16,6 @@ Floats = npt.NDArray[np.float64]
 _PLACES = "XYZ"
 _STEP_DEG = 3.0  # so far the part turns at most between two points
 _MOST_POINTS = 200_000
-
-
-def turning_axes(machine: MachineConfig) -> list[tuple[int, RotaryAxis]]:
-    """Return number and configuration of the axes that turn the part or the tool."""
-    return [
-        (i, axis)
-        for i, axis in enumerate(machine.axes)
-        if isinstance(axis, RotaryAxis) and axis.carries != "nothing"
-    ]
 
 
 def turns(track: Track, machine: MachineConfig) -> bool:
@@ -47,15 +38,7 @@ def on_part(position: Floats, machine: MachineConfig, tool: npt.NDArray[np.int64
     hangs = np.zeros((len(position), 3))
     if tool is not None:
         hangs = _hangs_mm(machine, tool)
-    axes = turning_axes(machine)
-    for number, axis in reversed(axes):
-        if axis.carries == "tool":
-            hangs = turned(hangs, axis.about, position[:, number], axis.center_mm)
-    place += hangs
-    for number, axis in axes:
-        if axis.carries == "part":
-            place = turned(place, axis.about, position[:, number], axis.center_mm)
-    return place
+    return tip_and_axis(machine, position, place, hangs)[0]
 
 
 def with_part_frame(track: Track, machine: MachineConfig) -> Track:

@@ -10,8 +10,9 @@ import numpy.typing as npt
 
 from polycnc.machine import MachineConfig, ToolConfig
 from polycnc.nc import ProgramText, Zero
-from polycnc.runner._machining import tools_of
-from polycnc.runner.view._part_frame import hang_mm, on_part, turning_axes
+from polycnc.runner._rotation import turning_axes
+from polycnc.runner._stock_tools import tools_of
+from polycnc.runner.view._part_frame import hang_mm, on_part
 from polycnc.runner.view._track import Track
 from polycnc.stock import Tool
 

@@ -11,6 +11,7 @@ from polycnc.runner._execution import Progress
 from polycnc.runner._run import run_program
 from polycnc.runner._settings import RunSettings, program_text
 from polycnc.runner.view._page import page
+from polycnc.runner.view._rest import rest_of
 from polycnc.runner.view._track import TrackCollector
 from polycnc.runner.view._view import View, files_of
 
@@ -28,8 +29,8 @@ def view_program(
 ) -> View:
     """Run a program and return its view, in memory that does not grow with the length of the run.
 
-    Alarms are in the view and in its `result`; arguments are those of `run`. Lengths are shown in inches
-    or not (`inch`), as the program has them if that is None.
+    Alarms are in the view and in its `result`; after one the rest that can be read is drawn grey. Arguments are those
+    of `run`. Lengths are shown in inches or not (`inch`), as the program has them if that is None.
 
     Raises:
         UsageError: no such file, machine or dialect.
@@ -43,6 +44,7 @@ def view_program(
     result = run_program(text, settings, check=False, tagged_rows=collector.add, progress=progress)
     execution = collector.execution()
     axes = tuple((axis.name, axis.unit) for axis in config.axes)
-    shown = page(result, axes, collector.track(execution), execution.texts, inch=inch)
+    rest = rest_of(text, settings, result)
+    shown = page(result, axes, collector.track(execution), execution.texts, inch=inch, rest=rest)
     given = (Path(each) for each in (machine, dialect) if isinstance(each, str | Path))
     return View(shown, result, (*files_of(execution.texts, text), *given))

@@ -1,7 +1,7 @@
 // The path as lines: cuts and rapids, their colours, and which place of them is under the pointer.
 import { Vector3 } from "three";
 import { after } from "./format.js";
-import { Lines } from "./lines.js";
+import { Lines, polyline } from "./lines.js";
 import { css, paletteColour, rgb, scaled } from "./theme.js";
 
 export class Path {
@@ -59,6 +59,35 @@ export class Path {
     let i = 0;
     for (let sum = speeds[0]; i < 1000 && sum < 0.98 * all; sum += speeds[i]) i++;
     return Math.max(i, 1) * this.topFeed / 1000;
+  }
+
+  // The way of colouring that tells most: speed where it varies, else what else there is several of.
+  telling(cuts_stock) {
+    const { record } = this, { which } = this.cuts;
+    if (!cuts_stock) {
+      const within = which.reduce((sum, k) => sum + (record.feed[k] > 0.95 * this.usualFeed ? record.t_s[k] - record.t_s[k - 1] : 0), 0);
+      const all = which.reduce((sum, k) => sum + record.t_s[k] - record.t_s[k - 1], 0);
+      if (within < 0.9 * all) return "speed";
+    }
+    const several = (of) => new Set(which.map(of)).size > 1;
+    if (several((k) => record.toolOf(record.blockAt[k]))) return "tool";
+    if (several((k) => record.operationAt(record.t_s[k] - 1e-6))) return "operation";
+    return this.depths[1] - this.depths[0] > 1e-3 ? "depth" : "speed";
+  }
+
+  // The path after an alarm, as one line of one colour; null where there is none.
+  rest() {
+    const { rest_tip, rest_rapid, about } = this.record, points = rest_rapid?.length ?? 0;
+    if (points < 2) return null;
+    const places = [], cut = [];
+    for (let k = 0; k < points; k++) {
+      if (k && rest_rapid[k] && !rest_rapid[k - 1]) places.push(null);
+      const at = this.place([0, 1, 2].map((i) => rest_tip[i * points + k] - about.zero[i]));
+      if (k && rest_rapid[k]) { places.push(null); places.push(at); } else { places.push(at); cut.push(at); }
+    }
+    const lines = polyline(places, { width: 2, order: 1 });
+    if (!lines.count) return null;
+    return Object.assign(lines, { box: [0, 1, 2].map((i) => [Math.min(...cut.map((at) => at[i])), Math.max(...cut.map((at) => at[i]))]) });
   }
 
   // The colour (r, g, b) of a point by a way of colouring.

@@ -2,6 +2,7 @@
 import { Group, Matrix4, Vector3 } from "three";
 import { Chart } from "./chart.js";
 import { Field } from "./field.js";
+import { save, stl, surface, threeMf } from "./files.js";
 import { floor } from "./floor.js";
 import { after, clockText, units } from "./format.js";
 import { polyline } from "./lines.js";
@@ -39,8 +40,11 @@ export async function start(buffers) {
     path.cuts.set("width", 1.4);
     path.box = path.box.map(([low, high], i) => [Math.min(low, body.box[i][0]), i === 2 ? Math.max(body.box[2][1], Math.min(high, body.box[2][1] + 5)) : Math.max(high, body.box[i][1])]);
   }
-  const wide = [path.cuts, path.rapids]; // lines that must know how large the stage is
-  stage.before.push(() => { for (const each of wide) each.fit(stage); });
+  const rest = path.rest(); // what could be read after an alarm
+  if (rest) { rest.material.depthTest = !body; part.add(rest.mesh); path.box = path.box.map(([low, high], i) => [Math.min(low, rest.box[i][0]), Math.max(high, rest.box[i][1])]); }
+  let ground = null;
+  const wide = [path.cuts, path.rapids, ...(rest ? [rest] : [])]; // lines that must know how large the stage is
+  stage.before.push(() => { for (const each of wide) each.fit(stage); ground?.fit(stage.pixel_mm); });
 
   // ---------------------------------------------------------------- what is drawn besides the path
   const extra = {};
@@ -52,7 +56,6 @@ export async function start(buffers) {
     wide.push(lines); parent.add(lines.mesh);
   };
   const cross = (at, size) => [0, 1, 2].flatMap((i) => [-1, 1].map((side) => at.map((v, n) => v + (n === i ? side * size : 0))).concat([null]));
-  let ground = null;
   function drawFloor() {
     if (ground) { part.remove(ground.group); for (const each of ground.lines) wide.splice(wide.indexOf(each), 1); }
     const names = about.tips && !lathe ? about.tips.map((i) => (i === null ? "" : record.axes[i].name)) : ["X", "Y", "Z"];
@@ -102,11 +105,13 @@ export async function start(buffers) {
       about.kinds.forEach((kind, i) => { if (used.has(i)) legend.append(chip(paletteColour(i), kind)); });
     }
     if (path.rapids.count) legend.append(chip("", "rapid", "rapid"));
+    if (rest) legend.append(chip(css("--rest"), "not run, after the alarm"));
     if (about.other) legend.append(chip(paletteColour(0), about.other.own), chip(css("--other"), about.other.name));
   }
   function recolour() {
     const how = element("colour").value, of = path.colouring(how);
     path.paint(how);
+    rest?.paint(() => rgb(css("--rest"))); rest?.paper(css("--paper"));
     if (body) body.paint((t) => of(Math.min(after(record.t_s, t - 1e-6), record.points - 1)));
     drawLegend(); stage.draw();
   }
@@ -267,14 +272,21 @@ export async function start(buffers) {
   // ---------------------------------------------------------------- what is around it
   element("title").textContent = about.program.split(/[\\/]/).pop();
   element("title").title = about.program;
+  element("summary").textContent = element("summary").title = [about.machine, about.summary, unit.size(about.path_mm), about.ok ? "" : "stopped by an alarm", about.other ? `beside ${about.other.name}` : ""].filter(Boolean).join(" · ");
   const stopped = about.remarks.find((each) => each.kind === "alarm");
-  element("summary").textContent = [about.machine, about.summary, unit.size(about.path_mm), about.ok ? "" : `stopped by an alarm${stopped?.line ? ` in line ${stopped.line}` : ""}`, about.other ? `beside ${about.other.name}` : ""].filter(Boolean).join(" · ");
+  if (stopped) {
+    const here = record.points ? record.at(record.end_s).axes : [], zero = record.points ? record.zeroAt(record.end_s) : [];
+    const place = record.axes.slice(0, here.length).map((axis, i) => `${axis.name}${axis.unit === "deg" ? (here[i] - zero[i]).toFixed(3) : unit.number(here[i] - zero[i])}`).join(" ");
+    element("stopped").textContent = `▲ Stopped${stopped.line ? ` at line ${stopped.line}` : ""}${place ? `, ${place}` : ""}: ${stopped.text}`;
+    element("stopped").hidden = false;
+    element("stopped").onclick = () => { goTo(record.end_s); if (stopped.row >= 0) listing.light(stopped.row); };
+  }
   element("note").textContent = about.note;
   element("slider").max = record.end_s;
   for (const rate of [1, 2, 5, 10, 20, 50, 100, 200, 500, 1000]) element("rate").add(new Option(`${rate}×`, rate, rate === 10, rate === 10));
   charts.forEach((each, i) => element("shown").add(new Option(each.name, i)));
   const shownViews = lathe ? ["Front", "3-D"] : directions;
-  const look = (name) => stage.look(name, path.box, lathe ? 0.74 : 0.8);
+  const look = (name) => stage.look(name, lathe ? ground.box : path.box, lathe ? 0.97 : 0.8);
   shownViews.forEach((name) => element("views").append(make("button", { type: "button", textContent: lathe && name === "Front" ? "Profile" : name, onclick: () => look(name) })));
   element("views").append(make("button", { type: "button", textContent: "All", title: "Everything, rapids too", onclick: () => stage.look(shownViews[0], path.all) }));
   for (const name of ["work", "machine", "to go"]) element("places").append(make("button", { type: "button", textContent: name, onclick: () => choose(name) }));
@@ -303,7 +315,7 @@ export async function start(buffers) {
   const signs = { alarm: "▲ alarm", collision: "▲ collision", remark: "● remark" };
   for (const each of about.remarks) {
     list(make("button", {
-      type: "button", className: each.kind, textContent: `${signs[each.kind]}${each.line ? `, line ${each.line}` : ""}: ${each.text}`,
+      type: "button", className: each.kind, textContent: `${signs[each.kind]}${each.line ? `, line ${each.line}` : ""}: ${each.text}${each.hint ? `. ${each.hint}` : ""}`,
       onclick: () => { if (each.time_s !== null) goTo(each.time_s); else if (each.row >= 0) goToRow(each.row); if (each.row >= 0) listing.light(each.row); },
     }));
   }
@@ -311,12 +323,21 @@ export async function start(buffers) {
   if (!record.points) say("The program moves no axis.");
   element("stocks").hidden = element("sections").hidden = !body;
   if (body && !body.changes) element("stock").value = "off"; // no tool is known: the path says more
+  for (const each of element("save").options) each.hidden = each.disabled = !body && ["stl", "3mf"].includes(each.value);
+  element("save").onchange = async () => { // the picture, or the body, as it is shown
+    const how = element("save").value, name = `${element("title").textContent.replace(/\.[^.]*$/, "") || "part"}.${how}`;
+    element("save").value = "";
+    if (how === "png") { stage.render(); stage.canvas.toBlob((blob) => save(blob, name)); }
+    else if (how) save(await { stl, "3mf": threeMf }[how](surface(body.solid())), name);
+    if (how) say(`${name}${how === "png" ? "" : ", mm from program zero"}`);
+  };
   for (const id of ["stock", "section", "cut"]) element(id).oninput = () => drawBody();
   element("frames").hidden = !about.chain.length;
   element("frame").onchange = () => goTo(now);
   element("slider").oninput = () => goTo(Number(element("slider").value));
   element("play").onclick = () => play(!playing);
   if (record.power) { element("colour").prepend(make("option", { value: "power", textContent: "power" })); element("colour").value = "power"; }
+  else element("colour").value = path.telling(Boolean(body && body.changes));
   element("colour").onchange = recolour;
   element("shown").onchange = () => { drawChart(); chart.now(now); };
   element("measure").onclick = toggleMeasure;
@@ -345,6 +366,7 @@ export async function start(buffers) {
     shownExecution = shownTool = -1; listing.lit = -2;
     goTo(now);
   }
+  if (body && body.changes) now = record.end_s; // the part first: what has been cut
   draw();
   look(shownViews[0]);
   element("stage").seen = { path, stage, part, body };

@@ -10,7 +10,7 @@ import h11
 from starlette.types import Receive, Scope, Send
 from uvicorn.protocols.http.h11_impl import H11Protocol
 
-from polycnc.servers.machines import notice_loss
+from polycnc.servers.machines import Treatment, notice_loss
 
 MOST_CONNECTIONS = 500
 MOST_WAIT_S = 60.0
@@ -29,6 +29,14 @@ class Refused(NamedTuple):
 Refuse: TypeAlias = Callable[[int, str, str], Refused]
 """Return the refusal for an HTTP status, what is wrong, and what to do."""
 
+Treat: TypeAlias = Callable[[str], Treatment]
+"""Count a request for a path, and say how it is to be treated."""
+
+
+def treated_as_usual(_: str) -> Treatment:
+    """Treat every request as usual."""
+    return Treatment()
+
 
 def refused_in_text(status: int, what: str, hint: str) -> Refused:
     """Return the refusal of a door that has no form of its own: a line of text."""
@@ -39,6 +47,7 @@ class Connection(H11Protocol):
     """A connection that does not wait for ever for what a client does not send, or does not read."""
 
     refuse: Refuse
+    treat: Treat
 
     def connection_made(self, transport: asyncio.Transport) -> None:  # type: ignore[override]
         """Begin; beyond so many connections only a refusal is answered."""
@@ -48,6 +57,8 @@ class Connection(H11Protocol):
         self._unread = 0
         if len(self.connections) > MOST_CONNECTIONS:
             self.app = self._crowded
+        else:
+            self._usual, self.app = self.app, self._treated
         self._looking = self.loop.call_later(_LOOK_S, self._look)
 
     def connection_lost(self, exc: Exception | None) -> None:
@@ -93,6 +104,25 @@ class Connection(H11Protocol):
         self._since_s = self.loop.time()
         super().on_response_complete()
 
+    def handle_websocket_upgrade(self, event: h11.Request) -> None:
+        """Begin a stream, unless a scenario drops it."""
+        if self.treat(event.target.decode("ascii", "replace").partition("?")[0]).drop:
+            self.transport.abort()
+            return
+        super().handle_websocket_upgrade(event)
+
+    async def _treated(self, scope: Scope, receive: Receive, send: Send) -> None:
+        """Answer, unless a scenario wants something else."""
+        treatment = self.treat(scope["path"])
+        if treatment.drop:
+            self.transport.abort()
+            while (await receive())["type"] != "http.disconnect":
+                pass
+            return
+        if treatment.delay_s:
+            await asyncio.sleep(treatment.delay_s)
+        await self._usual(scope, receive, send)
+
     async def _crowded(self, scope: Scope, receive: Receive, send: Send) -> None:
         said = self.refuse(503, "too many connections", "Close some, or ask later.")
         headers = [*said.headers, (b"connection", b"close")]
@@ -100,6 +130,6 @@ class Connection(H11Protocol):
         await send({"type": "http.response.body", "body": said.body})
 
 
-def refusing(refuse: Refuse) -> type[Connection]:
-    """Return the connections of a door that refuses in its own form."""
-    return type("Connection", (Connection,), {"refuse": staticmethod(refuse)})
+def connections_of(refuse: Refuse, treat: Treat) -> type[Connection]:
+    """Return the connections of a door that refuses in its own form, and treats requests as a scenario says."""
+    return type("Connection", (Connection,), {"refuse": staticmethod(refuse), "treat": staticmethod(treat)})

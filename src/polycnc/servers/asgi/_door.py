@@ -12,7 +12,7 @@ import uvicorn
 from starlette.types import ASGIApp
 
 from polycnc.errors import UsageError
-from polycnc.servers.asgi._connection import Refuse, refusing
+from polycnc.servers.asgi._connection import Refuse, Treat, connections_of, treated_as_usual
 from polycnc.servers.machines import peers_of
 
 _END_S = 0.5
@@ -31,9 +31,20 @@ class _Server(uvicorn.Server):
 
 
 class AsgiDoor:
-    """Serve an application on one port; `name` is the door's, `refuse` its form of what a connection refuses."""
+    """Serve an application on one port; `name` is the door's, `refuse` its form of what a connection refuses.
 
-    def __init__(self, name: str, app: ASGIApp, address: str, port: int, refuse: Refuse) -> None:
+    `treat` says with every request what happens to it.
+    """
+
+    def __init__(
+        self,
+        name: str,
+        app: ASGIApp,
+        address: str,
+        port: int,
+        refuse: Refuse,
+        treat: Treat = treated_as_usual,
+    ) -> None:
         self._name = name
         self._address = address
         self._port = port
@@ -45,7 +56,7 @@ class AsgiDoor:
                 lifespan="off",
                 ws="websockets-sansio",
                 ws_max_size=1 << 16,
-                http=refusing(refuse),
+                http=connections_of(refuse, treat),
                 timeout_keep_alive=30,
                 timeout_graceful_shutdown=None,
                 server_header=False,

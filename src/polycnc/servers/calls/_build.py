@@ -5,11 +5,20 @@ from __future__ import annotations
 import shutil
 import subprocess
 import sys
+import sysconfig
 from dataclasses import dataclass
 from pathlib import Path
 
 from polycnc import __version__
-from polycnc.controllers.library.clib import CLibrary, write_definitions, write_header, write_source
+from polycnc.controllers.library.clib import (
+    CLibrary,
+    write_basic,
+    write_csharp,
+    write_definitions,
+    write_header,
+    write_pascal,
+    write_source,
+)
 from polycnc.errors import UsageError
 
 _MOST_SHOWN = 400
@@ -73,24 +82,30 @@ def target_here() -> str:
     return _HERE.get(sys.platform, "linux")
 
 
-def write_library(library: CLibrary, folder: Path) -> list[Path]:
-    """Write header, source and definitions into a folder; return the files.
+def write_library(library: CLibrary, folder: Path, *, in_process: bool = False) -> list[Path]:
+    """Write header, source, definitions and declarations for other languages into a folder; return the files.
+
+    `in_process` has the machines in the program's own process, in this interpreter of Python.
 
     Raises:
         UsageError: They cannot be written, or files of these names are there that are not of `polycnc clib`.
     """
     texts = {
         f"{library.name}.h": write_header(library),
-        f"{library.name}.c": write_source(library, __version__),
+        f"{library.name}.c": write_source(library, __version__, sys.executable if in_process else ""),
         f"{library.name}.def": write_definitions(library),
         f"{library.name}_win32.def": write_definitions(library, decorated=True),
+        f"{library.name}.pas": write_pascal(library),
+        f"{library.name}.cs": write_csharp(library),
     }
+    if library.basic:
+        texts[f"{library.name}.bas"] = write_basic(library)
     made = [row.made.format(name=library.name) for row in TARGETS.values()]
     try:
         _refuse_foreign(folder, f"{library.name}.c", [*texts, *made, f"{library.name}.lib"])
         folder.mkdir(parents=True, exist_ok=True)
         for name, text in texts.items():
-            (folder / name).write_text(text, "utf-8")
+            (folder / name).write_bytes(text.encode())
     except OSError as error:
         raise UsageError(
             f"{folder}: cannot be written: {error.strerror}", hint="Name another folder with -o."
@@ -116,27 +131,52 @@ def _refuse_foreign(folder: Path, source: str, names: list[str]) -> None:
         )
 
 
-def build_command(library: CLibrary, target: str, compiler: str = "") -> list[str]:
+def build_command(
+    library: CLibrary, target: str, compiler: str = "", *, in_process: bool = False
+) -> list[str]:
     """Return the command that builds a library, in its folder.
 
     Raises:
-        UsageError: There is no such target.
+        UsageError: There is no such target, or no interpreter that it can have in the program's process.
     """
     if target not in TARGETS:
         raise UsageError(f"there is no target '{target[:40]}'", hint=f"There are {', '.join(TARGETS)}.")
     row = TARGETS[target]
     made = row.made.format(name=library.name)
     options = [each.format(name=library.name) for each in row.options]
+    if in_process:
+        options += _interpreter(target)
     return [compiler or row.compilers[0], "-std=c99", "-Os", "-o", made, f"{library.name}.c", *options]
 
 
-def build_library(library: CLibrary, folder: Path, target: str) -> Path:
+def _interpreter(target: str) -> list[str]:
+    """Return what links the interpreter that runs now.
+
+    Raises:
+        UsageError: It has no shared library, or the target is another system.
+    """
+    if target != "linux" or target_here() != "linux" or sys.maxsize < 1 << 32:
+        raise UsageError(
+            f"a library with the machines in the program's process is not built for {target}",
+            hint="It is for Linux of 64 bits; leave --in-process away.",
+        )
+    told = sysconfig.get_config_vars()
+    if not told.get("Py_ENABLE_SHARED"):
+        raise UsageError(
+            "this interpreter has no shared library, which the program would load",
+            hint="Use a Python that was built with --enable-shared; those of Linux distributions are.",
+        )
+    name, folder = f"python{told['LDVERSION']}", told["LIBDIR"]
+    return ["-I", told["INCLUDEPY"], "-L", folder, f"-l{name}", f"-Wl,-rpath,{folder}"]
+
+
+def build_library(library: CLibrary, folder: Path, target: str, *, in_process: bool = False) -> Path:
     """Build what `write_library` wrote; return the library.
 
     Raises:
         UsageError: There is no compiler for this target, or it fails.
     """
-    command = build_command(library, target)
+    command = build_command(library, target, in_process=in_process)
     row = TARGETS[target]
     compiler = next(filter(None, map(shutil.which, row.compilers)), None)
     if compiler is None or row.only_on not in ("", sys.platform):

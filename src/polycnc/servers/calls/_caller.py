@@ -7,10 +7,10 @@ from dataclasses import dataclass, field
 from operator import attrgetter
 from typing import Any, NamedTuple
 
-from polycnc.controllers.library import Opaque, Session
-from polycnc.controllers.library.clib import Call, CLibrary, Slot, Way
+from polycnc.controllers.library import Opaque, Session, repacked
+from polycnc.controllers.library.clib import Call, CLibrary, Slot, Way, alike, copied, length_in
 from polycnc.errors import UsageError
-from polycnc.servers.calls._frames import CallError, Done, Given, Layout
+from polycnc.servers.calls._frames import NULL, CallError, Done, Given, Layout
 
 _MOST_HANDLES = 65536  # that a client has ever had
 _CONTENT = attrgetter("content")
@@ -47,6 +47,10 @@ class _Prepared:
     put: tuple[_Put, ...]
     changed: bool
     """Whether records are written, of which some may be as before."""
+    lengths: tuple[tuple[str, Any, Any], ...] = ()
+    """Arguments that count the bytes of a structure that the program packs otherwise: name, its structure, ours."""
+    quick: Callable[[bytes], Done] | None = None
+    """Carries out a call that reads through no pointer, given a frame of the usual size."""
 
 
 @dataclass(slots=True)
@@ -62,15 +66,21 @@ class Caller:
     _handles: dict[int, Any] = field(default_factory=dict)
     _prepared: dict[int, _Prepared] = field(default_factory=dict)
 
-    def carry_out(self, number: int, packed: bytes) -> tuple[Call, list[Given], Done]:
+    def carry_out(self, number: int, packed: bytes) -> tuple[Layout, Done]:
         """Carry out a call.
 
         Raises:
             CallError: There is no such call, or its arguments are not those of the table; nothing is carried out.
         """
         prepared = self._prepared.get(number) or self._prepare(number)
-        given = prepared.layout.unpacked(packed)
-        return prepared.call, given, self._done(prepared, given)
+        layout, quick = prepared.layout, prepared.quick
+        if quick is not None and len(packed) == layout.whole.size:  # type: ignore[union-attr]
+            return layout, quick(packed)
+        return layout, self._done(prepared, layout.unpacked(packed))
+
+    def carry_out_given(self, call: Call, given: list[Given]) -> Done:
+        """Carry out a call whose arguments are there."""
+        return self._done(self._prepared.get(call.number) or self._prepare(call.number), given)
 
     def _prepare(self, number: int) -> _Prepared:
         call = self.library.by_number.get(number)
@@ -89,7 +99,46 @@ class Caller:
             tuple(_Put(k, each, self._putter(each)) for k, each in slots if each.writes),
             any(each.way is Way.RECORDS for each in call.slots),
         )
+        made.lengths = tuple(self._lengths(call))
+        made.quick = self._quick(made)
         return made
+
+    def _lengths(self, call: Call) -> Iterator[tuple[str, Any, Any]]:
+        for slot in call.slots:
+            if (cls := self._other(slot)) is not None and slot.way is Way.RECORD:
+                for each in call.function.arguments:
+                    if each.length_of == slot.argument.name:
+                        yield each.name, slot.element, cls
+
+    def _other(self, slot: Slot) -> Any:
+        """Return the structure as the façade has it where the program packs it otherwise, None where both are alike."""
+        if not self.library.packing or not hasattr(slot.element, "_table_"):
+            return None
+        cls = slot.element.variant_of
+        return None if alike(slot.element, cls) else cls
+
+    def _quick(self, prepared: _Prepared) -> Callable[[bytes], Done] | None:
+        """Return what does the same as `_done`, without an object for each argument; None where something is read."""
+        call, whole = prepared.call, prepared.layout.whole
+        if whole is None or prepared.held or prepared.changed or prepared.lengths:
+            return None
+        takes = [self._made(each, k) for k, each in enumerate(call.slots) if each.argument.passed]
+        puts = [(k, each, self._putter(each)) for k, each in enumerate(call.slots) if each.writes]
+        if any(not each.argument.returned and each.way is not Way.RECORD for _, each, _ in puts):
+            return None
+        filled = {k: number for number, (k, _) in enumerate(takes)}
+        contents = [(k, -1 if each.argument.returned else filled[k], put) for k, each, put in puts]
+        return _quickly(prepared, self.session, takes, contents)
+
+    def _made(self, slot: Slot, place: int) -> tuple[int, Callable[[Any], Any] | None]:
+        """Return where an argument is, and what makes of it what the façade is given; None of the number itself."""
+        if not slot.reads:
+            element = slot.element
+            return place, (lambda _: element()) if slot.way is Way.RECORD else (lambda _: None)
+        handles = self._handles
+        return place, (lambda number: handles.get(number, number)) if isinstance(
+            slot.argument.type, Opaque
+        ) else None
 
     def _done(self, prepared: _Prepared, given: list[Given]) -> Done:
         name = prepared.call.function.name
@@ -99,6 +148,8 @@ class Caller:
         values = {each.name: each.value(given[each.place]) for each in prepared.taken}
         for place in prepared.held:
             _hold(values, given[place])
+        for counter, packed, cls in prepared.lengths:
+            values[counter] = length_in(packed, cls, values[counter])
         self.session.refused = False
         try:
             answer = prepared.function(*values.values())
@@ -145,7 +196,13 @@ class Caller:
             case Way.TEXT:
                 return lambda content: content.split(b"\0", 1)[0].decode("latin-1")
             case Way.MEMORY:
-                return lambda content: content
+                return self._from_packed(slot)
+            case Way.RECORD if (cls := self._other(slot)) is not None:
+                return lambda content: copied(
+                    slot.element.from_buffer_copy(content[: slot.width].ljust(slot.width, b"\0")),
+                    cls,
+                    self.library.selected,
+                )
             case Way.RECORD:
                 width, made = slot.width, slot.element.from_buffer_copy
                 return lambda content: made(content[:width].ljust(width, b"\0"))
@@ -165,7 +222,25 @@ class Caller:
                 return lambda value: str(value).encode("latin-1", "replace") + b"\0"
             case Way.RECORDS:
                 return lambda value: b"".join(bytes(each) for each in value)
+            case Way.RECORD if self._other(slot) is not None:
+                return self._to_packed
         return bytes
+
+    def _to_packed(self, value: Any) -> bytes:
+        """Return a structure of the façade as the program packs it; it may be a variant of the table's."""
+        kind: Any = type(value)
+        cls = repacked(kind, self.library.packing)
+        return bytes(copied(value, cls, self.library.selected))
+
+    def _from_packed(self, slot: Slot) -> Callable[[Any], Any]:
+        """Return what makes memory of the façade of memory of the program."""
+        cls = self._other(slot)
+        if cls is None:
+            return lambda content: content
+        selected = self.library.selected
+        return lambda content: b"".join(
+            bytes(copied(each, cls, selected)) for each in _records(slot, content)
+        )
 
     def _number(self, handle: Any) -> int:
         """Return the number that stands for a handle; 0 for none."""
@@ -176,6 +251,42 @@ class Caller:
             raise CallError(f"more than {_MOST_HANDLES} handles")
         self._handles[number] = handle
         return number
+
+
+def _quickly(
+    prepared: _Prepared,
+    session: Session,
+    takes: list[tuple[int, Callable[[Any], Any] | None]],
+    contents: list[tuple[int, int, Callable[[Any], bytes]]],
+) -> Callable[[bytes], Done]:
+    """Return what carries out a call: `takes` are its arguments, `contents` its outputs, the result's own as -1."""
+    whole, function = prepared.layout.whole, prepared.function
+    assert whole is not None
+    places = [place for place, _, _ in contents]
+    name, null = prepared.call.function.name, prepared.null
+    is_void = prepared.call.function.result == "void"
+
+    def quick(packed: bytes) -> Done:
+        values = whole.unpack(packed)
+        for place in places:
+            if values[place] == NULL:
+                return Done(name, null, [], True)
+        given = [values[place] if made is None else made(values[place]) for place, made in takes]
+        session.refused = False
+        try:
+            answer = function(*given)
+        except UsageError:
+            return Done(name, null, [], True)
+        results = iter(answer if isinstance(answer, tuple) else (answer,))
+        code = None if is_void else next(results)
+        if session.refused:
+            return Done(name, code, [], True)
+        outputs = [
+            put(next(results) if at < 0 else given[at])[: values[place]] for place, at, put in contents
+        ]
+        return Done(name, code, outputs)
+
+    return quick
 
 
 def _hold(values: dict[str, Any], given: Given) -> None:

@@ -8,10 +8,9 @@ from typing import Any, NamedTuple
 
 from polycnc.controllers.library.clib import Call, Slot, Way
 
-_NULL = 0xFFFFFFFF
+NULL = 0xFFFFFFFF
 _SIZE = struct.Struct("<I")
-_ANSWER = struct.Struct("<IHHI")
-_WHOLE, _REAL = struct.Struct("<q"), struct.Struct("<d")
+_DOUBLE = 8
 _CARRIED_OUT, _REFUSED = 0, 1
 _FORMATS = {1: "b", 2: "h", 4: "i", 8: "q"}
 
@@ -48,7 +47,11 @@ class Layout:
         self._values = [
             struct.Struct(f"<{_format(each)}") if each.way is Way.VALUE else _SIZE for each in call.slots
         ]
-        self._whole = struct.Struct("<" + "".join(map(_format, call.slots))) if plain else None
+        self.whole = struct.Struct("<" + "".join(map(_format, call.slots))) if plain else None
+        """The form of frames of one size, None if there is none."""
+        self._written = sum(each.writes for each in call.slots)
+        result = "d" if call.function.result == "double" else "q"
+        self._answer = struct.Struct(f"<IHHI{result}{self._written}I")
 
     def unpacked(self, packed: bytes) -> list[Given]:
         """Return the arguments in a frame.
@@ -56,14 +59,29 @@ class Layout:
         Raises:
             CallError: They are not as long as they have to be.
         """
-        if self._whole is None or self._whole.size != len(packed):
+        if self.whole is None or self.whole.size != len(packed):
             return self._one_by_one(packed)
         return [
             Given(slot, each, 0)
             if slot.way is Way.VALUE
-            else Given(slot, b"", None if each == _NULL else each)
-            for slot, each in zip(self.call.slots, self._whole.unpack(packed), strict=True)
+            else Given(slot, b"", None if each == NULL else each)
+            for slot, each in zip(self.call.slots, self.whole.unpack(packed), strict=True)
         ]
+
+    def answered(self, serial: int, done: Done, most: int) -> bytes:
+        """Return the answer to a call: state, result, the sizes of all outputs, the outputs.
+
+        Raises:
+            CallError: It is longer than `most` bytes.
+        """
+        outputs = done.outputs or [b""] * self._written
+        sizes = [*map(len, outputs)]
+        size = self._answer.size - _SIZE.size + sum(sizes)
+        if size > most:
+            raise CallError(f"the answer to {done.name} has {size} bytes")
+        state = _REFUSED if done.refused else _CARRIED_OUT
+        head = self._answer.pack(size, self.call.number, serial, state, done.code or 0, *sizes)
+        return head + b"".join(outputs)
 
     def _one_by_one(self, packed: bytes) -> list[Given]:
         at, given = 0, list[Given]()
@@ -92,7 +110,7 @@ class Layout:
     def _size(self, packed: bytes, at: int) -> int | None:
         """Return a size in a frame; None of a null pointer."""
         found: int = self._number(_SIZE, packed, at)
-        return None if found == _NULL else found
+        return None if found == NULL else found
 
     def _number(self, form: struct.Struct, packed: bytes, at: int) -> Any:
         if at + form.size > len(packed):
@@ -109,23 +127,6 @@ def _format(slot: Slot) -> str:
         return "I"
     below = slot.element(-1).value
     if isinstance(below, float):
-        return "d" if slot.width == _REAL.size else "f"
+        return "d" if slot.width == _DOUBLE else "f"
     form = _FORMATS[slot.width]
     return form if below < 0 else form.upper()
-
-
-def answer_frame(call: Call, serial: int, done: Done, most: int) -> bytes:
-    """Return the answer to a call: state, result, the sizes of all outputs, the outputs.
-
-    Raises:
-        CallError: It is longer than `most` bytes.
-    """
-    code = done.code or 0
-    result = _REAL.pack(code) if isinstance(code, float) else _WHOLE.pack(int(code))
-    outputs = done.outputs or [b"" for each in call.slots if each.writes]
-    body = b"".join((result, *[_SIZE.pack(len(each)) for each in outputs], *outputs))
-    size = len(body) + _ANSWER.size - _SIZE.size
-    if size > most:
-        raise CallError(f"the answer to {done.name} has {size} bytes")
-    state = _REFUSED if done.refused else _CARRIED_OUT
-    return _ANSWER.pack(size, call.number, serial, state) + body

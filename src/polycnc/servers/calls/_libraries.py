@@ -9,15 +9,19 @@ from typing import Any
 
 from polycnc.controllers.library.clib import CLibrary
 from polycnc.errors import UsageError
+from polycnc.machine import Way
 from polycnc.servers.calls._caller import Caller
 
 
 @dataclass(frozen=True, slots=True)
 class Served:
-    """A library: `make` returns a caller with a session of its own, which reaches these devices; `end` ends it."""
+    """A library: `make` returns a caller with a session of its own, which reaches these devices; `end` ends it.
+
+    The third argument of `make` is what calls that read do to the time of the devices, None for nothing.
+    """
 
     load: Callable[[], CLibrary]
-    make: Callable[[CLibrary, Sequence[Any]], Caller]
+    make: Callable[[CLibrary, Sequence[Any], Way | None], Caller]
     end: Callable[[Any], None]
 
 
@@ -27,12 +31,12 @@ def _load_fwlib() -> CLibrary:
     return FWLIB
 
 
-def _call_fwlib(library: CLibrary, devices: Sequence[Any]) -> Caller:
+def _call_fwlib(library: CLibrary, devices: Sequence[Any], clock: Way | None = None) -> Caller:
     from polycnc.controllers.fanuc import fwlib
 
     session = fwlib.Session()
     for node, device in enumerate(devices[:8]):
-        session.attach(node, device)
+        session.attach(node, device, clock)
 
     def by_address(ip: str, port: int, timeout: int) -> tuple[int, int]:
         """Open a handle of the control that the program has reached by this address: the first one here."""
@@ -48,11 +52,11 @@ def _load_imcnet() -> CLibrary:
     return IMCNET
 
 
-def _call_imcnet(library: CLibrary, devices: Sequence[Any]) -> Caller:
+def _call_imcnet(library: CLibrary, devices: Sequence[Any], clock: Way | None = None) -> Caller:
     from polycnc.controllers.imc import imclib
 
     session = imclib.Session()
-    session.attach(*devices, clock=None)
+    session.attach(*devices, clock=clock)
     return Caller(library, session)
 
 
@@ -62,11 +66,11 @@ def _load_mcug3() -> CLibrary:
     return MCUG3
 
 
-def _call_mcug3(library: CLibrary, devices: Sequence[Any]) -> Caller:
+def _call_mcug3(library: CLibrary, devices: Sequence[Any], clock: Way | None = None) -> Caller:
     from polycnc.controllers.apci import pcap
 
     session = pcap.Session()
-    session.attach(*devices, clock=None)
+    session.attach(*devices, clock=clock)
 
     def beside(name: str) -> Callable[..., Any]:
         """Return a function that takes files of the server's folder alone, whatever folder the program names."""

@@ -10,9 +10,10 @@ from pathlib import Path
 from polycnc.controllers.library.clib import PORT
 from polycnc.errors import UsageError
 from polycnc.servers.calls._caller import Caller
-from polycnc.servers.calls._client import CallClient, Trace
+from polycnc.servers.calls._client import CallClient
 from polycnc.servers.calls._libraries import LIBRARIES
-from polycnc.servers.machines import LOOPBACK, Log, ServedMachine, notice_loss, peers_of
+from polycnc.servers.calls._trace import Trace
+from polycnc.servers.machines import AS_USUAL, LOOPBACK, Log, ServedMachine, Treatment, notice_loss, peers_of
 
 _MOST_CLIENTS = 256
 _HELLO_S = 10.0
@@ -87,14 +88,17 @@ class CallsServer:
         line.connection_made(transport)
         line.take(data)
 
-    def find(self, name: str) -> tuple[Caller, list[ServedMachine]] | None:
-        """Return a caller of a library, and the machines that it reaches."""
+    def find(self, name: str, packing: int) -> tuple[Caller, list[ServedMachine]] | None:
+        """Return a caller of a library in a packing, else in the manual's, and the machines that it reaches."""
         kind = self._libraries.get(name)
         if kind is None:
             return None
         machines = [each for each in self._machines if each.kind == kind]
         served = LIBRARIES[kind]
-        return served.make(served.load(), [each.device for each in machines]), machines
+        library = served.load()
+        return served.make(
+            library.packed(packing) or library, [each.device for each in machines], None
+        ), machines
 
     def tell(self, sentence: str) -> None:
         """Write what was refused into the log."""
@@ -112,12 +116,13 @@ class _Line(asyncio.BufferedProtocol):
     def __init__(self, server: CallsServer) -> None:
         self._server = server
         self._machines: list[ServedMachine] = []
-        self._client = CallClient(self._find, server.tell, server.trace, self._now_s)
+        self._client = CallClient(self._find, server.tell, server.trace, self._now_s, self._treat)
+        self._later: asyncio.TimerHandle | None = None
         self._limit: asyncio.TimerHandle | None = None
         self._buffer = memoryview(bytearray(_READ))
 
-    def _find(self, name: str) -> Caller | None:
-        found = self._server.find(name)
+    def _find(self, name: str, packing: int) -> Caller | None:
+        found = self._server.find(name, packing)
         if found is None:
             return None
         caller, self._machines = found
@@ -125,6 +130,12 @@ class _Line(asyncio.BufferedProtocol):
 
     def _now_s(self) -> float:
         return self._machines[0].device.clock.now_s if self._machines else 0.0
+
+    def _treat(self) -> Treatment:
+        found = [each.treat("calls") for each in self._machines if not each.is_usual]
+        if not found:
+            return AS_USUAL
+        return Treatment(any(each.drop for each in found), max(each.delay_s for each in found))
 
     def connection_made(self, transport: asyncio.BaseTransport) -> None:
         assert isinstance(transport, asyncio.Transport)
@@ -154,6 +165,20 @@ class _Line(asyncio.BufferedProtocol):
             self.abort()
 
     def _send(self, sent: bytes) -> None:
+        if self._client.dropped:
+            self.abort()
+        elif self._client.delay_s and sent:  # the next call is not read before it is answered
+            self.transport.pause_reading()
+            self._later = asyncio.get_running_loop().call_later(self._client.delay_s, self._send_late, sent)
+        else:
+            self._send_now(sent)
+
+    def _send_late(self, sent: bytes) -> None:
+        self._later = None
+        self.transport.resume_reading()
+        self._send_now(sent)
+
+    def _send_now(self, sent: bytes) -> None:
         if sent:
             self.transport.write(sent)
         if self._machines and self._limit is not None:
@@ -166,10 +191,13 @@ class _Line(asyncio.BufferedProtocol):
         self.transport.pause_reading()
 
     def resume_writing(self) -> None:
-        self.transport.resume_reading()
+        if self._later is None:
+            self.transport.resume_reading()
 
     def connection_lost(self, error: Exception | None) -> None:
         self._server.lines.discard(self)
+        if self._later is not None:
+            self._later.cancel()
         if self._limit is not None:
             self._limit.cancel()
         caller = self._client.caller

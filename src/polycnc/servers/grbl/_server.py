@@ -4,18 +4,22 @@ from __future__ import annotations
 
 import asyncio
 import os
+import re
 from collections.abc import Callable
 from pathlib import Path
 from typing import Protocol, TypeVar
 
 from polycnc.errors import UsageError
-from polycnc.servers.machines import notice_loss, peers_of
+from polycnc.servers.machines import AS_USUAL, Treatment, notice_loss, peers_of
 
 R = TypeVar("R")
 PORT = 8123
 _TURN_S = 0.01  # between two looks at what goes on, which is less than a sender's buffer lasts
 _PIECE_BYTES = 4096
 _MOST_UNREAD = 1 << 20  # bytes that a client may leave unread
+_ENDS = (b"\n", b"?")
+_REQUESTS = re.compile(rb"[^\n?]*[\n?]|[^\n?]+")
+"""Pieces that end with a line or a question."""
 _OTHER = b"[MSG:Another sender is connected]\r\n"
 
 
@@ -46,7 +50,8 @@ class Core(Protocol):
 class GrblServer:
     """Let a sender reach `core`: one at a time on a TCP port (0: a free one), besides one on a pseudo terminal.
 
-    `terminal` is a path that leads to the terminal, "" for none. `owner` carries out what the core does.
+    `terminal` is a path that leads to the terminal, "" for none. `owner` carries out what the core does. `treat` counts
+    a line or a `?` of the port, and says how it is to be treated, unless all `is_usual`.
     """
 
     def __init__(
@@ -57,7 +62,10 @@ class GrblServer:
         address: str = "127.0.0.1",
         port: int = PORT,
         terminal: str = "",
+        treat: Callable[[], Treatment] = lambda: AS_USUAL,
+        is_usual: Callable[[], bool] = lambda: True,
     ) -> None:
+        self._treat, self._is_usual = treat, is_usual
         self._owner = owner
         self._core = core
         self.address = address
@@ -132,7 +140,15 @@ class GrblServer:
         self._owner.submit(self._core.greet, self._answer)
         try:
             while data := await reader.read(_PIECE_BYTES):
-                self._receive(data)
+                for piece in [data] if self._is_usual() else _REQUESTS.findall(data):
+                    if piece[-1:] in _ENDS:
+                        treatment = self._treat()
+                        if treatment.drop:
+                            writer.transport.abort()
+                            return
+                        if treatment.delay_s:
+                            await asyncio.sleep(treatment.delay_s)
+                    self._receive(piece)
                 await asyncio.sleep(0)
         except (OSError, asyncio.CancelledError):
             pass  # it has gone, or the door closes

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from polycnc.servers.asgi import AsgiDoor, Refused
 from polycnc.servers.http._app import make_app
 from polycnc.servers.http._problem import problem
-from polycnc.servers.machines import ServedMachine, Wanted
+from polycnc.servers.machines import ServedMachine, Treatment, Wanted, machines_of_path, treatment_of
 
 PORT = 8080
 
@@ -18,7 +18,11 @@ class HttpDoor(AsgiDoor):
     def __init__(self, machines: Sequence[ServedMachine], wanted: Wanted) -> None:
         app = make_app(machines, token=wanted.token, log=wanted.log, hosts=(wanted.address,))
         port = PORT if wanted.port is None else wanted.port
-        super().__init__("http", app, wanted.address, port, _refuse)
+
+        def treat(path: str) -> Treatment:
+            return treatment_of(machines_of_path(machines, path), "http")
+
+        super().__init__("http", app, wanted.address, port, _refuse, treat)
 
 
 def _refuse(status: int, what: str, hint: str) -> Refused:

@@ -77,7 +77,7 @@ class Guard:
         if names.count(b"host") != 1 or not self._knows(_header(scope, b"host")):
             return 421, "this host is not served here", "Ask by the address that the door was said to have."
         origin = _header(scope, b"origin")
-        if origin and (origin == "null" or urlsplit(origin).netloc != _header(scope, b"host")):
+        if origin and _place_of(origin) != _header(scope, b"host"):
             return 403, "a page of another origin cannot ask", "Open the page of this server."
         length = _header(scope, b"content-length")
         if length and (not length.isdecimal() or len(length) > 12 or int(length) > MOST_BODY_BYTES):
@@ -87,6 +87,8 @@ class Guard:
         return None
 
     def _knows(self, host: str) -> bool:
+        if "@" in host:  # a user has no place there
+            return False
         try:
             name = urlsplit(f"//{host}").hostname or ""
             if name in self._hosts:
@@ -113,6 +115,14 @@ class Guard:
 
 def _header(scope: Scope, name: bytes) -> str:
     return next((value.decode("latin-1") for key, value in scope["headers"] if key == name), "")
+
+
+def _place_of(origin: str) -> str | None:
+    """Return host and port of an origin; None of what has none."""
+    try:
+        return urlsplit(origin).netloc or None
+    except ValueError:  # a bracket that is not closed
+        return None
 
 
 def _bounded(receive: Receive) -> Receive:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import asyncio
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
 from typing import Any, Protocol, TypeVar
 
@@ -28,6 +28,10 @@ class Treatment:
 
 
 AS_USUAL = Treatment()
+
+
+def _as_usual(_: str) -> Treatment:
+    return AS_USUAL
 
 
 class OpenDoor(Protocol):
@@ -69,7 +73,7 @@ class ServedMachine:
     signals: Values = NO_SIGNALS
     screen: Screen | None = None
     tasks: Tasks | None = None
-    treat: Callable[[str], Treatment] = lambda door: AS_USUAL
+    treat: Callable[[str], Treatment] = _as_usual
     """A door tells its name with every request, and does with it what is said."""
 
     doors: dict[str, OpenDoor] = field(default_factory=dict)
@@ -96,6 +100,11 @@ class ServedMachine:
     def control(self) -> Control | None:
         """The control within the device; None for a device without one."""
         return None if self.find_control is None else self.find_control()
+
+    @property
+    def is_usual(self) -> bool:
+        """Whether its doors treat every request as usual."""
+        return self.treat is _as_usual
 
     async def ask(self, question: Callable[[], R]) -> R:
         """Ask between two cycles, after what is due, and return the answer.
@@ -127,3 +136,18 @@ class ServedMachine:
         """Let no more time pass and switch off."""
         self.keeper.close()
         self.end()
+
+
+def machines_of_path(machines: Iterable[ServedMachine], path: str) -> list[ServedMachine]:
+    """Return the machines that a path of a URL names; all, if it names none."""
+    names, every = set(path.split("/")), list(machines)
+    return [each for each in every if each.name in names] or every
+
+
+def treatment_of(machines: Iterable[ServedMachine], door: str) -> Treatment:
+    """Count a request of a door at these machines, after what is due, and say how it is to be treated."""
+    found: list[Treatment] = []
+    for machine in machines:
+        if not machine.is_usual:
+            machine.keeper.submit(lambda machine=machine: machine.treat(door), found.append)  # type: ignore[misc]
+    return Treatment(any(each.drop for each in found), max((each.delay_s for each in found), default=0.0))

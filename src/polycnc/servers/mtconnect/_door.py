@@ -12,7 +12,14 @@ from starlette.types import ASGIApp, Receive, Scope, Send
 
 from polycnc.errors import PolycncError
 from polycnc.servers.asgi import AsgiDoor, Refused
-from polycnc.servers.machines import LOOPBACK, ServedMachine, Wanted
+from polycnc.servers.machines import (
+    LOOPBACK,
+    ServedMachine,
+    Treatment,
+    Wanted,
+    machines_of_path,
+    treatment_of,
+)
 from polycnc.servers.mtconnect._agent import Agent, Answer, StreamAsked
 from polycnc.servers.mtconnect._device import model_of
 from polycnc.servers.mtconnect._errors import AgentError, Code
@@ -235,4 +242,8 @@ class MTConnectDoor(AsgiDoor):
         hosts = frozenset({"localhost", LOOPBACK, "::1", wanted.address}) if loopback else None
         app: ASGIApp = App(observed, hosts)
         port = PORT if wanted.port is None else wanted.port
-        super().__init__("mtconnect", app, wanted.address, port, partial(_refuse, observed.agent))
+
+        def treat(path: str) -> Treatment:
+            return treatment_of(machines_of_path(machines, path), "mtconnect")
+
+        super().__init__("mtconnect", app, wanted.address, port, partial(_refuse, observed.agent), treat)

@@ -7,7 +7,7 @@ from pathlib import Path
 
 from polycnc.errors import UsageError
 from polycnc.servers.commands import carry_out
-from polycnc.servers.machines import Door, DoorKind, ServedMachine, Wanted
+from polycnc.servers.machines import Door, DoorKind, ServedMachine, Wanted, treatment_of
 from polycnc.servers.mtconnect import USUAL_VERSION
 
 FOCAS_PROFILE = "31i"
@@ -61,7 +61,15 @@ def _open_grbl(machines: Sequence[ServedMachine], wanted: Wanted) -> Door:
     else:  # its programs stay in its own dialect
         core = GrblWatch(find, lambda asked: carry_out(machine, asked))
     port = PORT if wanted.port is None else wanted.port
-    return GrblServer(machine.keeper, core, address=wanted.address, port=port, terminal=wanted.path)
+    return GrblServer(
+        machine.keeper,
+        core,
+        address=wanted.address,
+        port=port,
+        terminal=wanted.path,
+        treat=lambda: treatment_of([machine], "grbl"),
+        is_usual=lambda: machine.is_usual,
+    )
 
 
 def plant_kinds(version: str = USUAL_VERSION) -> tuple[DoorKind, ...]:

@@ -253,7 +253,7 @@ _KINDS = {
 }
 DOORS: Mapping[str, frozenset[str]] = {
     "focas": frozenset(_KINDS),
-    "opcua": frozenset({"latency", "drop"}),
+    **dict.fromkeys(("http", "calls", "grbl", "mtconnect", "shdr", "opcua"), frozenset({"latency", "drop"})),
 }
 """The doors that count requests, and what can happen to their connections."""
 

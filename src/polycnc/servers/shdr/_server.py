@@ -5,7 +5,7 @@ from __future__ import annotations
 import asyncio
 
 from polycnc.errors import UsageError
-from polycnc.servers.machines import LOOPBACK, ServedMachine, notice_loss, peers_of
+from polycnc.servers.machines import LOOPBACK, ServedMachine, notice_loss, peers_of, treatment_of
 from polycnc.servers.mtconnect import VERSIONS, model_of
 from polycnc.servers.plant import see
 from polycnc.servers.shdr._lines import Adapter, Session
@@ -105,8 +105,13 @@ class ShdrServer:
         notice_loss(writer.transport)
         session = Session()
         try:
+            if not await self._treated(writer):
+                return
             self._machine.keeper.submit(lambda: self._begin(writer), lambda _: None)
             while data := await reader.read(_PIECE_BYTES):
+                for _ in range(data.count(b"\n")):
+                    if not await self._treated(writer):
+                        return
                 self._machine.keeper.submit(self._look, lambda _: None)
                 self._send(writer, session.receive(data))
         except (OSError, asyncio.CancelledError):
@@ -114,3 +119,12 @@ class ShdrServer:
         finally:
             self._agents.discard(writer)
             writer.close()
+
+    async def _treated(self, writer: asyncio.StreamWriter) -> bool:
+        """Count a connection or a command, and do what a scenario wants with it; tell whether it is answered."""
+        treatment = treatment_of([self._machine], "shdr")
+        if treatment.drop:
+            writer.transport.abort()
+        elif treatment.delay_s:
+            await asyncio.sleep(treatment.delay_s)
+        return not treatment.drop

@@ -125,6 +125,11 @@ export class Field {
     this.texture.needsUpdate = true;
   }
 
+  // The heights that are shown above the bottom, with what they mean.
+  solid() {
+    return { heights: this.shown.filter((_, n) => n % 2 === 0), size: this.size, cell: this.mesh.scale.x, place: this.mesh.position.toArray() };
+  }
+
   // Colour what was cut; `of(t)` returns r, g, b (0 to 255) of a time.
   paint(of) {
     this.ends.forEach((t, s) => this.colours.set(of(t), 4 * s));

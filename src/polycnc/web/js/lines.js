@@ -5,7 +5,7 @@ const VERTEX = `
 attribute vec3 begin, end, colour;
 attribute vec2 times;
 uniform vec2 size;
-uniform float width;
+uniform float width, lift;
 varying vec3 shade;
 varying float time;
 void main() {
@@ -17,6 +17,7 @@ void main() {
   vec2 off = (vec2(-along.y, along.x) * position.x + along * (position.y * 2.0 - 1.0) * 0.5) * width / size;
   gl_Position = mix(a, b, position.y);
   gl_Position.xy += off * gl_Position.w;
+  gl_Position.z -= lift * gl_Position.w; // parallel lines of sight: a fixed part of the depth
   shade = colour;
   time = mix(times.x, times.y, position.y);
 }`;
@@ -48,7 +49,7 @@ export class Lines {
     this.geometry = geometry;
     this.material = new ShaderMaterial({
       vertexShader: VERTEX, fragmentShader: FRAGMENT, side: DoubleSide, transparent: true,
-      uniforms: { size: { value: new Vector2(1, 1) }, width: { value: width }, now: { value: Infinity }, faint: { value: 1 }, opacity: { value: 1 }, paper: { value: new Color() } },
+      uniforms: { size: { value: new Vector2(1, 1) }, width: { value: width }, lift: { value: 2e-5 * Math.max(order, 0) }, now: { value: Infinity }, faint: { value: 1 }, opacity: { value: 1 }, paper: { value: new Color() } },
     });
     this.mesh = new Mesh(geometry, this.material);
     this.mesh.frustumCulled = false;

@@ -8,7 +8,8 @@ const body = (points, colour, opacity = 1) => {
   return new Mesh(geometry, material);
 };
 
-// `shape` has `outline` and `holder` (mm) where they are known; a pointer is `size` long.
+// `shape` has `outline` and `holder` (mm) where they are known; a pointer is `size` long. One that is wide beside that
+// is glass, so that it does not hide what it cuts.
 export function toolShape(shape, size, colour) {
   const group = new Group();
   const outline = shape?.outline;
@@ -17,10 +18,11 @@ export function toolShape(shape, size, colour) {
     return group;
   }
   const [radius, top] = outline[outline.length - 1];
-  group.add(body([...outline, [0, top]], colour, 0.92));
-  group.add(body([[0, top], [0.96 * radius, top], [0.96 * radius, top + 3 * radius], [0, top + 3 * radius]], "#9aa4ad", 0.92));
+  const solid = radius > 1.2 * size ? 0.4 : 0.92;
+  group.add(body([...outline, [0, top]], colour, solid));
+  group.add(body([[0, top], [0.96 * radius, top], [0.96 * radius, top + 3 * radius], [0, top + 3 * radius]], "#9aa4ad", solid));
   let end = top + 3 * radius;
-  for (const [height, r] of shape.holder ?? []) { group.add(body([[0, height], [r, height], [r, height + r], [0, height + r]], "#59636c", 0.6)); end = Math.max(end, height + r); }
-  if (!shape.holder?.length) group.add(body([[0, end], [1.8 * radius, end], [2.1 * radius, end + 2 * radius], [0, end + 2 * radius]], "#59636c", 0.6));
+  for (const [height, r] of shape.holder ?? []) { group.add(body([[0, height], [r, height], [r, height + r], [0, height + r]], "#59636c", 0.65 * solid)); end = Math.max(end, height + r); }
+  if (!shape.holder?.length) group.add(body([[0, end], [1.8 * radius, end], [2.1 * radius, end + 2 * radius], [0, end + 2 * radius]], "#59636c", 0.65 * solid));
   return group;
 }

@@ -110,8 +110,8 @@ class Coupling:
             service = DATA_SERVICES.get(number)
             if service is None:
                 raise NcsError(NcsCode.NOT_AVAILABLE)
-            key = _key(service, channel, extra, self._server.control.image)
-            values, new = self._server.ledger.read(self._server.control.image, key)
+            image = self._server.control.image
+            values, new = self._server.ledger.read(image, _key(service, channel, extra, image))
         except NcsError as refused:
             return int(refused.code)
         check_buffer(service, values, buffer, size)

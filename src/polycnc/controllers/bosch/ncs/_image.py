@@ -6,7 +6,7 @@ angles deg, feeds mm/min, speeds rev/min and potentiometers 0.01 % throughout, a
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from enum import IntEnum, IntFlag
 from typing import Literal
@@ -252,7 +252,7 @@ class Channel:
     optional_stop: tuple[bool, bool] = (False, False)
     reselection: bool = False
     other_waits: Wait = field(default_factory=lambda: Wait(0))
-    coordinates: list[Coordinate] = field(default_factory=list)
+    coordinates: Sequence[Coordinate] = ()
 
     @property
     def is_ready(self) -> bool:

@@ -93,7 +93,7 @@ class Execution:
     def count(self) -> int:
         """How many blocks have been executed since the program began, of those that move, dwell or have functions."""
         run = self._power.control.channels[0].run
-        return 0 if run is None else run.blocks_done
+        return 0 if run is None else run.reading.blocks_done
 
     # ------------------------------------------------------------------ texts
 

@@ -58,6 +58,11 @@ def _chosen(kind: int) -> tuple[list[int], list[str], list[int]]:
     raise Refused(EW.EW_NUMBER)
 
 
+def is_of_groups(kind: int) -> bool:
+    """Tell whether a kind of modal data is G codes."""
+    return kind == _ALL_GROUPS or 0 <= kind < GROUPS
+
+
 def _aux(device: PowerMate, data: ModalBlock, name: str) -> MODAL_AUX:
     word = data.words.get(name, Word())
     text = word.text

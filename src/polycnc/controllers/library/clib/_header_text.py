@@ -124,7 +124,7 @@ def _typedefs(library: CLibrary) -> Iterator[str]:
 
 
 def _structures(library: CLibrary) -> Iterator[str]:
-    for name, cls in library.header.classes.items():
+    for name, cls in library.classes.items():
         yield from _structure(name, cls)
 
 

@@ -14,7 +14,8 @@ from typing import Any
 from polycnc.controllers.library._c_types import Bytes, Opaque, Pointer, Text
 from polycnc.controllers.library._functions import Argument, Direction, Function
 from polycnc.controllers.library._header import Header
-from polycnc.controllers.library._structures import Element
+from polycnc.controllers.library._structures import Element, layouts, repacked
+from polycnc.controllers.library.clib._packing import Selected
 
 
 class Way(Enum):
@@ -95,12 +96,16 @@ class CLibrary:
         opens_at: The function that connects to an address, its first arguments.
         frees: The function that lets a handle go.
         stdcall: Whether 32-bit Windows programs clean no stack.
+        basic: Whether its maker has a module for Visual Basic.
         declarations: C types that prototypes use, behind the structures.
         helpers: C functions that extents use.
         in_bytes: Whether a length counts bytes; else elements.
         extents: By function and argument: how many bytes lie behind a pointer, in C.
         aliases: Other names of functions.
         left_out: By function, why it does nothing.
+        packing: To how many bytes the program packs structures, 0: each as the manual has it.
+        packings: The packings that programs of this library have besides.
+        selected: Which member of a union holds.
         failures: By function, what it answers where `null` or `lost` would mean success.
     """
 
@@ -120,12 +125,16 @@ class CLibrary:
     opens_at: str = ""
     frees: str = ""
     stdcall: bool = True
+    basic: bool = False
     declarations: str = ""
     helpers: str = ""
     in_bytes: bool = True
     extents: Mapping[tuple[str, str], str] = field(default_factory=dict)
     aliases: Mapping[str, str] = field(default_factory=dict)
     left_out: Mapping[str, str] = field(default_factory=dict)
+    packing: int = 0
+    packings: frozenset[int] = frozenset()
+    selected: Selected = field(default_factory=dict)
     failures: Mapping[str, int] = field(default_factory=dict)
 
     @cached_property
@@ -136,6 +145,22 @@ class CLibrary:
             for number, (_, each) in enumerate(sorted(self.functions.items()), 1)
             if each.name not in self.left_out
         )
+
+    @cached_property
+    def classes(self) -> Mapping[str, Any]:
+        """The structures by name, as the program packs them."""
+        classes = self.header.classes
+        return (
+            {name: repacked(cls, self.packing) for name, cls in classes.items()} if self.packing else classes
+        )
+
+    @cached_property
+    def _packed(self) -> dict[int, CLibrary]:
+        return {0: self} | {each: replace(self, packing=each, packings=frozenset()) for each in self.packings}
+
+    def packed(self, packing: int) -> CLibrary | None:
+        """Return the library of programs that pack structures to so many bytes, None if there is none."""
+        return self._packed.get(packing)
 
     def prepare(self) -> None:
         """Work out now what else the first client would wait for."""
@@ -153,7 +178,7 @@ class CLibrary:
             f"{each.number} {each.function.prototype} " + ", ".join(slot.row for slot in each.slots)
             for each in self.calls
         ]
-        rows += [f"{name} {each}" for name, each in self.header.layouts.items()]
+        rows += [f"{name} {each}" for name, each in layouts(*self.classes.values()).items()]
         return hashlib.sha256("\n".join(rows).encode()).digest()[:16]
 
 
@@ -200,18 +225,22 @@ def slot_of(library: CLibrary, argument: Argument) -> tuple[Way, Any]:
         case Text():
             return Way.TEXT, ctypes.c_char
         case Bytes():
-            return Way.MEMORY, library.header.classes.get(argument.c.rstrip(" *"), ctypes.c_char)
+            return Way.MEMORY, library.classes.get(argument.c.rstrip(" *"), ctypes.c_char)
         case Pointer(of=of) if of is callable:
             return Way.MEMORY, ctypes.c_char
         case Pointer(ctype=None, of=of):
-            return (Way.NUMBERS, ctypes.c_int16) if of is int else (Way.RECORDS, of)
+            return (Way.NUMBERS, ctypes.c_int16) if of is int else (Way.RECORDS, _as_packed(library, of))
         case Pointer(ctype=ctype):
-            return Way.RECORD, ctype
+            return Way.RECORD, _as_packed(library, ctype)
     assert kind is not None
     by_value = argument.passed and argument.direction is Direction.IN and not star
     if isinstance(kind, Opaque):
         return (Way.VALUE if by_value else Way.NUMBERS), ctypes.c_uint32
     return (Way.VALUE if by_value else Way.NUMBERS), kind.ctype
+
+
+def _as_packed(library: CLibrary, cls: Any) -> Any:
+    return repacked(cls, library.packing) if library.packing else cls
 
 
 def _counter(function: Function, argument: Argument) -> Argument | None:

@@ -17,8 +17,11 @@ HELLO = 60
 _VERSION_SIZE = 16
 
 
-def write_source(library: CLibrary, version: str) -> str:
-    """Return the text of the source; `version` is what the library calls itself."""
+def write_source(library: CLibrary, version: str, python: str = "") -> str:
+    """Return the text of the source; `version` is what the library calls itself.
+
+    `python` is the interpreter of machines in the program's own process, "" where they are served.
+    """
     runtime = files(__package__).joinpath("runtime.c").read_text("utf-8")
     by_name = {each.function.name: each for each in library.calls}
     bodies = [
@@ -29,11 +32,17 @@ def write_source(library: CLibrary, version: str) -> str:
         _alias(library, alias, library.functions[name]) for alias, name in sorted(library.aliases.items())
     ]
     return "\n".join(
-        (*_head(library, version), runtime, f'#include "{library.name}.h"\n', library.helpers, *bodies)
+        (
+            *_head(library, version, python),
+            runtime,
+            f'#include "{library.name}.h"\n',
+            library.helpers,
+            *bodies,
+        )
     )
 
 
-def _head(library: CLibrary, version: str) -> Iterator[str]:
+def _head(library: CLibrary, version: str, python: str) -> Iterator[str]:
     table = ", ".join(f"0x{byte:02x}" for byte in library.table_hash)
     yield f"/* {library.name}: calls to served machines. Written by polycnc clib {library.kind}. */"
     yield "#define PC_BUILDS"
@@ -41,7 +50,7 @@ def _head(library: CLibrary, version: str) -> Iterator[str]:
         ("PC_NAME", f'"{library.name}"'),
         ("PC_VERSION", f'"{version[: _VERSION_SIZE - 1]}"'),
         ("PC_PORT", f'"{PORT}"'),
-        ("PC_PACKING", "0 /* of each structure, as the manual has it */"),
+        ("PC_PACKING", f"{library.packing} /* 0: each structure as the manual has it */"),
         ("PC_HELLO_SIZE", HELLO),
         ("PC_HANDLES", int(bool(library.through))),
         ("PC_CODE_NOBODY", f"({library.nobody})"),
@@ -50,6 +59,9 @@ def _head(library: CLibrary, version: str) -> Iterator[str]:
         ("PC_CODE_HANDLE", f"({library.handle})"),
     ):
         yield f"#define {name} {value}"
+    if python:
+        escaped = python.replace("\\", "\\\\").replace('"', '\\"')
+        yield f'#define PC_IN_PROCESS\n#define PC_PYTHON "{escaped}"'
     yield f"static const unsigned char pc_table[16] = {{{table}}};"
 
 

@@ -1,7 +1,8 @@
 /* What all functions below share: connections to the served machines, and calls over them. Sockets, nothing else.
 
    A call is a frame, its answer another one; both lie on the stack. Nothing is written into the program's memory before
-   the whole answer is here and every size in it has been checked. */
+   the whole answer is here and every size in it has been checked. With PC_IN_PROCESS the machines are in this process,
+   in an interpreter of Python, and the same frames go to it. */
 #ifdef _WIN32
 #define _WIN32_WINNT 0x0600
 #include <winsock2.h>
@@ -10,6 +11,10 @@
 #define _POSIX_C_SOURCE 200809L
 #define _DEFAULT_SOURCE 1
 #define _DARWIN_C_SOURCE 1
+#ifdef PC_IN_PROCESS
+#define PY_SSIZE_T_CLEAN
+#include <Python.h>
+#endif
 #include <errno.h>
 #include <fcntl.h>
 #include <netdb.h>
@@ -59,7 +64,11 @@ typedef pthread_mutex_t pc_lock;
 #define PC_UNLOCKED PTHREAD_MUTEX_INITIALIZER
 #define pc_enter(lock) pthread_mutex_lock(lock)
 #define pc_leave(lock) pthread_mutex_unlock(lock)
+#ifdef PC_IN_PROCESS
+static void pc_shut(pc_socket client);
+#else
 #define pc_shut(socket) close(socket)
+#endif
 #ifdef MSG_NOSIGNAL
 #define PC_SEND_FLAGS MSG_NOSIGNAL
 #else
@@ -156,6 +165,79 @@ static void pc_begin(void)
     pc_ready = 1;
 }
 
+#ifdef PC_IN_PROCESS
+static PyObject *pc_inside; /* what answers, once there is an interpreter */
+
+/* Have an interpreter, that of the program if it has one, and the machines in it; 0 if that fails. `pc_all` is held. */
+static int pc_python(void)
+{
+    PyGILState_STATE state;
+    PyObject *module;
+    if (pc_inside)
+        return 1;
+    if (!Py_IsInitialized()) {
+        const char *said = getenv("POLYCNC_PYTHON");
+        PyConfig config;
+        PyStatus status;
+        PyConfig_InitPythonConfig(&config);
+        config.install_signal_handlers = 0;
+        config.parse_argv = 0;
+        status = PyConfig_SetBytesString(&config, &config.program_name, said && *said ? said : PC_PYTHON);
+        if (!PyStatus_Exception(status))
+            status = Py_InitializeFromConfig(&config);
+        PyConfig_Clear(&config);
+        if (PyStatus_Exception(status))
+            return 0;
+        PyEval_SaveThread();
+    }
+    state = PyGILState_Ensure();
+    module = PyImport_ImportModule("polycnc.servers.inside");
+    pc_inside = module ? PyObject_CallMethod(module, "inside", "s", PC_NAME) : NULL;
+    Py_XDECREF(module);
+    PyErr_Clear();
+    PyGILState_Release(state);
+    return pc_inside != NULL;
+}
+
+/* Let a client send bytes; how many came back, 0 if it has been ended or more than `most` came. */
+static uint32_t pc_exchanged(pc_socket client, const unsigned char *sent, uint32_t size, unsigned char *to, uint32_t most)
+{
+    PyGILState_STATE state = PyGILState_Ensure();
+    PyObject *got = PyObject_CallMethod(pc_inside, "receive", "iy#", client, (const char *)sent, (Py_ssize_t)size);
+    char *bytes = NULL;
+    Py_ssize_t length = 0;
+    if (!got || PyBytes_AsStringAndSize(got, &bytes, &length) || length > (Py_ssize_t)most)
+        length = 0;
+    if (length)
+        memcpy(to, bytes, (size_t)length);
+    Py_XDECREF(got);
+    PyErr_Clear();
+    PyGILState_Release(state);
+    return (uint32_t)length;
+}
+
+static void pc_shut(pc_socket client)
+{
+    PyGILState_STATE state = PyGILState_Ensure();
+    Py_XDECREF(PyObject_CallMethod(pc_inside, "shut", "i", client));
+    PyErr_Clear();
+    PyGILState_Release(state);
+}
+
+static int pc_talk(pc_socket client, const unsigned char *sent, uint32_t size, unsigned char *answer, uint32_t expected)
+{
+    return pc_exchanged(client, sent, size, answer, expected) == expected;
+}
+
+static uint32_t pc_round(pc_socket client, unsigned char *frame, uint32_t size)
+{
+    uint32_t have = pc_exchanged(client, frame, size, frame, PC_MOST), said = 0;
+    if (have >= PC_HEAD)
+        memcpy(&said, frame, 4);
+    return have >= PC_HEAD && said == have - 4 ? have : 0;
+}
+
+#else
 static int pc_send(pc_socket socket, const unsigned char *bytes, uint32_t size)
 {
     while (size) {
@@ -211,6 +293,18 @@ static uint32_t pc_answer(pc_socket socket, unsigned char *frame)
         }
     }
     return have == size ? size : 0;
+}
+
+/* Send bytes and receive so many; 0 if nothing more comes. */
+static int pc_talk(pc_socket socket, const unsigned char *sent, uint32_t size, unsigned char *answer, uint32_t expected)
+{
+    return pc_send(socket, sent, size) && pc_receive(socket, answer, expected);
+}
+
+/* Send a frame and receive its answer into its place; its size, 0 if it is none. */
+static uint32_t pc_round(pc_socket socket, unsigned char *frame, uint32_t size)
+{
+    return pc_send(socket, frame, size) ? pc_answer(socket, frame) : 0;
 }
 
 /* Connect within a time, and let no later wait take longer; -1: for ever. */
@@ -278,6 +372,8 @@ static pc_socket pc_reach(const struct addrinfo *there, int wait_ms)
     return PC_NO_SOCKET;
 }
 
+#endif
+
 /* Say who calls; 0, or the code that the other side refuses it with, or `nobody` if there is none. */
 static int pc_greet(pc_socket socket, int nobody)
 {
@@ -290,7 +386,7 @@ static int pc_greet(pc_socket socket, int nobody)
     memcpy(hello + 12, PC_NAME, sizeof PC_NAME - 1);
     memcpy(hello + 28, PC_VERSION, sizeof PC_VERSION - 1);
     memcpy(hello + 44, pc_table, sizeof pc_table);
-    if (!pc_send(socket, hello, sizeof hello) || !pc_receive(socket, answer, sizeof answer))
+    if (!pc_talk(socket, hello, sizeof hello, answer, sizeof answer))
         return nobody;
     if (memcmp(answer, "PNCCALL1", 8))
         return nobody;
@@ -298,6 +394,7 @@ static int pc_greet(pc_socket socket, int nobody)
     return (int)code;
 }
 
+#ifndef PC_IN_PROCESS
 /* Split host:port, [host]:port or host; 0 if it is too long. */
 static int pc_split(const char *place, char *host, size_t room, char *port, size_t port_room)
 {
@@ -313,6 +410,8 @@ static int pc_split(const char *place, char *host, size_t room, char *port, size
     snprintf(port, port_room, "%s", colon && colon[1] ? colon + 1 : PC_PORT);
     return 1;
 }
+
+#endif
 
 /* Read the line calls = "host:port" of polycnc.toml beside the program. */
 static int pc_read_file(char *place, size_t room)
@@ -357,6 +456,28 @@ static void pc_where(char *place, size_t room)
         snprintf(place, room, "127.0.0.1:" PC_PORT);
 }
 
+#ifdef PC_IN_PROCESS
+/* Connect to the machines in this process; every place is a client of its own. */
+static int pc_connect(pc_connection *made, const char *place, int wait_ms, int nobody)
+{
+    static pc_socket last;
+    int code;
+    (void)wait_ms;
+    if (!pc_python())
+        return nobody;
+    code = pc_greet(++last, nobody);
+    if (code) {
+        pc_shut(last);
+        return code;
+    }
+    made->socket = last;
+    made->state = PC_OPEN;
+    made->serial = 0;
+    snprintf(made->place, sizeof made->place, "%s", place);
+    return 0;
+}
+
+#else
 /* Connect to a place; 0 and an open connection, or the code why not. */
 static int pc_connect(pc_connection *made, const char *place, int wait_ms, int nobody)
 {
@@ -385,6 +506,8 @@ static int pc_connect(pc_connection *made, const char *place, int wait_ms, int n
     freeaddrinfo(found);
     return code;
 }
+
+#endif
 
 /* Return the number of an open connection to a place; *code says why there is none (-1). `pc_all` is held. */
 static int pc_open(const char *place, int wait_ms, int nobody, int *code)
@@ -513,7 +636,7 @@ static int pc_exchange(pc_connection *on, uint16_t number, const pc_argument *gi
             pc_leave(&on->lock);
             return PC_CODE_NULL;
         }
-        if (pc_send(on->socket, frame, size) && (size = pc_answer(on->socket, frame)) != 0) {
+        if ((size = pc_round(on->socket, frame, size)) != 0) {
             memcpy(heard, frame + 4, 4);
             if (heard[0] == number && heard[1] == serial && pc_unpack(frame, size, given, count)) {
                 memcpy(&result->whole, frame + 12, 8);

@@ -1,0 +1,83 @@
+"""The tools of a run with their shapes: from the machine file, and from the remarks of programs."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Mapping
+from dataclasses import replace
+
+from polycnc.errors import UsageError
+from polycnc.machine import MachineConfig, ToolConfig
+from polycnc.nc import ProgramText
+from polycnc.stock import Tool, ToolKind, tool_number, tool_of_remark
+
+_REMARK_OR_TOOL = re.compile(rb"\(([^)\r\n]*)\)|;([^\r\n]*)|[Tt][ \t]*0*([0-9]+)")
+_INCH = re.compile(rb"[Gg]0*20(?![0-9.])")
+
+
+def tools_of(config: MachineConfig, texts: Mapping[str, ProgramText]) -> dict[int, Tool]:
+    """Return the tools that the machine file and the remarks of the programs describe.
+
+    A shape in the machine file comes first, then remarks, then its description and radius; how long it cuts, shank and
+    holder are those of the machine file.
+
+    Raises:
+        UsageError: the machine file describes a tool that there cannot be.
+    """
+    tools = {}
+    for number, each in config.tools.items():
+        described = tool_of_remark(each.description)
+        if described is not None:
+            tools[number] = described
+        elif each.radius_mm > 0.0:
+            tools[number] = Tool(ToolKind.FLAT, 2.0 * each.radius_mm)
+    for text in texts.values():
+        inch = _INCH.search(text.content) is not None
+        for number, remark in remarks_of_tools(text):
+            if (found := tool_of_remark(remark, inch=inch)) is not None:
+                tools[number] = found
+    for number, each in config.tools.items():
+        try:
+            if (whole := _whole(tools.get(number), each)) is not None:
+                tools[number] = whole
+        except UsageError as error:
+            raise UsageError(f"tool {number} of '{config.name}': {error.what}", hint=error.hint) from None
+    return tools
+
+
+def _whole(tool: Tool | None, config: ToolConfig) -> Tool | None:
+    """Return a tool with what its table in the machine file says of it."""
+    if config.shape is not None:
+        if not config.radius_mm > 0.0:
+            raise UsageError(f"a {config.shape} tool without a radius", hint="Give 'radius_mm'.")
+        tool = Tool(
+            ToolKind(config.shape),
+            2.0 * config.radius_mm,
+            corner_mm=config.corner_mm,
+            angle_deg=config.angle_deg,
+            tip_mm=config.tip_diameter_mm,
+        )
+    if tool is None:
+        return None
+    return replace(
+        tool,
+        flute_mm=config.flute_mm or tool.flute_mm,
+        shank=tuple((height, 0.5 * diameter) for height, diameter in config.shank),
+        holder=tuple((height, 0.5 * diameter) for height, diameter in config.holder),
+        left_hand=config.left_hand or tool.left_hand,
+    )
+
+
+def remarks_of_tools(text: ProgramText) -> Iterator[tuple[int, str]]:
+    """Yield numbers of tools with remarks: those that name them, and the last one before a T word."""
+    last = ""
+    for found in _REMARK_OR_TOOL.finditer(text.content):
+        if found[3] is not None:
+            if last:
+                yield int(found[3][:9]), last
+            continue
+        remark = (found[1] or found[2] or b"").decode("utf-8", "replace")
+        named = tool_number(remark)
+        if named is not None:
+            yield named, remark
+        last = "" if named is not None else remark

@@ -1,0 +1,59 @@
+"""What holds a part, and must not be touched: boxes and files of triangles, seen from above."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+from polycnc.errors import UsageError
+from polycnc.stock._form import numbers_of
+from polycnc.stock._solid import solid_stock
+from polycnc.stock._stock import MOST_CELLS, Box, Stock
+
+MOST_FIXTURES = 50
+_FORMS = "box=X0,Y0,Z0,X1,Y1,Z1 or the name of an STL file"
+
+
+def check_fixtures(texts: Sequence[str]) -> None:
+    """Refuse texts that tell no fixtures.
+
+    Raises:
+        UsageError: one tells none, or there are too many.
+    """
+    if len(texts) > MOST_FIXTURES:
+        raise UsageError(f"{len(texts)} fixtures", hint=f"At most {MOST_FIXTURES} are looked at.")
+    for text in texts:
+        if text.startswith("box="):
+            _box(text)
+        elif not text.lower().endswith(".stl"):
+            raise UsageError(f"'{text}' is no fixture", hint=f"Write {_FORMS}.")
+
+
+def fixtures_of(texts: Sequence[str], cell_mm: float) -> list[Stock]:
+    """Return the fixtures that texts tell (mm, in the coordinates of the stock), in cells of this width.
+
+    What lies under an overhang of one counts as full.
+
+    Raises:
+        UsageError: no such file, no closed surface, or too many cells.
+    """
+    check_fixtures(texts)
+    found, cells = [], 0
+    for text in texts:
+        is_box = text.startswith("box=")
+        fixture = (
+            Stock(_box(text), cell_mm) if is_box else solid_stock(Path(text), cell_mm, lambda _: cell_mm)
+        )
+        cells += fixture.heights.size
+        if cells > MOST_CELLS:
+            raise UsageError(
+                f"the fixtures have more than {MOST_CELLS:,} cells of {cell_mm:g} mm",
+                hint="Choose a coarser resolution.",
+            )
+        found.append(fixture)
+    return found
+
+
+def _box(text: str) -> Box:
+    x0, y0, z0, x1, y1, z1 = numbers_of(text, text.partition("=")[2], 6, _FORMS)
+    return Box((x0, y0, z0), (x1, y1, z1))

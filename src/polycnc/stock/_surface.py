@@ -1,0 +1,152 @@
+"""Points on a surface of triangles, in the cells of a grid, and how deep a moving tool gets behind them."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import numpy.typing as npt
+
+from polycnc.kernel import compiled, entry
+from polycnc.stock._chords import chord
+from polycnc.stock._profile import TO_R
+from polycnc.stock._sweep import AT_X, AT_Y, DEPTH_MM, lowest, span
+
+Floats = npt.NDArray[np.float64]
+Integers = npt.NDArray[np.int64]
+
+_FAR = 1e300
+_AROUND = 0.75  # cells: more than from the middle of one to its corner
+_LEAST_UP = -1e-3
+
+
+@compiled
+def _normal(corners: Floats, normal: Floats) -> float:
+    """Write the unit normal of a triangle [3, 3]; return its area (mm2), 0 of one without."""
+    ux, uy, uz = (
+        corners[1, 0] - corners[0, 0],
+        corners[1, 1] - corners[0, 1],
+        corners[1, 2] - corners[0, 2],
+    )
+    vx, vy, vz = (
+        corners[2, 0] - corners[0, 0],
+        corners[2, 1] - corners[0, 1],
+        corners[2, 2] - corners[0, 2],
+    )
+    normal[0], normal[1], normal[2] = uy * vz - uz * vy, uz * vx - ux * vz, ux * vy - uy * vx
+    twice = math.sqrt(normal[0] ** 2 + normal[1] ** 2 + normal[2] ** 2)
+    if twice < 1e-12:
+        return 0.0
+    for i in range(3):
+        normal[i] /= twice
+    return 0.5 * twice
+
+
+@compiled
+def _distance(a: Floats, b: Floats) -> float:
+    return math.sqrt((a[0] - b[0]) ** 2 + (a[1] - b[1]) ** 2 + (a[2] - b[2]) ** 2)
+
+
+@entry(steps=lambda triangles, *_: 50 * len(triangles))
+def sample(triangles: Floats, spacing_mm: float, inwards_mm: float, points: Floats) -> int:
+    """Write points [at least as many, 4] behind triangles [n, 3, 3] that are not seen from below; return how many.
+
+    They lie as close as `spacing_mm` and as deep as `inwards_mm` below the surface, whose normal is the last
+    column as far as it points up. Those that `points` has no room for are counted alone.
+    """
+    count = 0
+    normal = np.empty(3)
+    for n in range(triangles.shape[0]):
+        area = _normal(triangles[n], normal)
+        if area <= 0.0 or normal[2] < _LEAST_UP:
+            continue
+        top = 0  # the corner opposite of the longest side
+        base = 0.0
+        for corner in range(3):
+            length = _distance(triangles[n, (corner + 1) % 3], triangles[n, (corner + 2) % 3])
+            if length > base:
+                top, base = corner, length
+        left, right = (top + 1) % 3, (top + 2) % 3
+        lines = math.ceil(2.0 * area / base / spacing_mm)
+        for line in range(lines):
+            up = (line + 0.5) / lines
+            across = math.ceil(base * (1.0 - up) / spacing_mm)
+            for at in range(across):
+                share = (at + 0.5) / across
+                if count < points.shape[0]:
+                    for i in range(3):
+                        low = triangles[n, left, i] * (1.0 - share) + triangles[n, right, i] * share
+                        place = low * (1.0 - up) + triangles[n, top, i] * up
+                        points[count, i] = place - inwards_mm * normal[i]
+                    points[count, 3] = normal[2]
+                count += 1
+    return count
+
+
+@compiled
+def _depth(
+    rows: Floats, point: Floats, inwards_mm: float, begin: Floats, way: tuple[float, float, float, float]
+) -> float:
+    """Return how deep the surface before a point is in what a tool sweeps, as if that were even nearby.
+
+    It is 0 where the point is not in it.
+    """
+    length, ux, uy, slope = way
+    radius = rows[rows.shape[0] - 1, TO_R]
+    dx, dy = point[0] - begin[0], point[1] - begin[1]
+    along, beside = dx * ux + dy * uy, dy * ux - dx * uy
+    past = along - min(max(along, 0.0), length)
+    sideways = radius - math.sqrt(past * past + beside * beside)
+    if sideways <= 0.0:
+        return 0.0
+    low = lowest(rows, beside * beside, slope, -along, length - along)
+    if low >= 0.5 * _FAR:
+        return 0.0
+    downwards = point[2] - (begin[2] + slope * along + low)
+    if downwards <= 0.0:
+        return 0.0
+    downwards += inwards_mm * max(point[3], 0.0)
+    sideways += inwards_mm * math.sqrt(max(0.0, 1.0 - point[3] * point[3]))
+    return float(downwards * sideways / math.sqrt(downwards * downwards + sideways * sideways))
+
+
+@entry(steps=lambda points, starts, x0, y0, cell_mm, inwards_mm, places, *_: 500 * len(places))
+def reach_behind(
+    points: Floats,
+    starts: npt.NDArray[np.int64],
+    x0: float,
+    y0: float,
+    cell_mm: float,
+    inwards_mm: float,
+    places: Floats,
+    cutter: Floats,
+    figures: Floats,
+) -> None:
+    """Write into `figures` [n, 6] how deep a tool gets on each way between `places` [n + 1, 3], and where.
+
+    The points of cell `(iy, ix)` are those from `starts[iy, ix]` on, whose last column begins the next line.
+    """
+    radius = cutter[cutter.shape[0] - 1, TO_R] + _AROUND * cell_mm
+    ny, nx = starts.shape[0], starts.shape[1] - 1
+    for n in range(places.shape[0] - 1):
+        begin, end = places[n], places[n + 1]
+        way = chord(begin, end)
+        lowest_tip = min(begin[2], end[2])
+        first_y = max(0, math.ceil((min(begin[1], end[1]) - radius - y0) / cell_mm))
+        last_y = min(ny - 1, math.floor((max(begin[1], end[1]) + radius - y0) / cell_mm))
+        low_z = begin if begin[2] <= end[2] else end
+        for iy in range(first_y, last_y + 1):
+            low, high = span(begin, end, way[1], way[2], radius, y0 + iy * cell_mm)
+            if low > high:
+                continue
+            first_x = max(0, math.ceil((low - x0) / cell_mm))
+            last_x = min(nx - 1, math.floor((high - x0) / cell_mm))
+            if first_x > last_x:
+                continue
+            for at in range(starts[iy, first_x], starts[iy, last_x + 1]):
+                if points[at, 2] <= lowest_tip:
+                    continue
+                depth = _depth(cutter, points[at], inwards_mm, begin if way[0] > 0.0 else low_z, way)
+                if depth > figures[n, DEPTH_MM]:
+                    figures[n, DEPTH_MM] = depth
+                    figures[n, AT_X], figures[n, AT_Y] = points[at, 0], points[at, 1]

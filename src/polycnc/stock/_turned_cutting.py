@@ -1,0 +1,92 @@
+"""Cut a body with tools whose axis turns against it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+import numpy.typing as npt
+
+from polycnc.stock._contacts import Contact, ContactKind
+from polycnc.stock._cutting import CHORD_SHARE
+from polycnc.stock._rows import Rows
+from polycnc.stock._sweep import AT_X, AT_Y, DEPTH_MM, VOLUME_MM3
+from polycnc.stock._tool import Tool
+from polycnc.stock._voxel_sweep import AT_Z, VOXEL_FIGURES, sweep_voxels
+from polycnc.stock._voxels import Voxels
+from polycnc.stock._ways import Tally, Ways, WaysOfRows
+
+Floats = npt.NDArray[np.float64]
+
+_RIM_CELLS = 1.0
+"""How much narrower, and higher, a tool is that must not touch what it has cut: points are in it by chance."""
+
+
+class TurnedCutting:
+    """Let tools cut a body of points (see `tally`), each with the axis that its rows have.
+
+    Depths are how far up the tool the material is. A tool that is not among `tools` cuts nothing.
+    """
+
+    def __init__(self, stock: Voxels, tools: Mapping[int, Tool]) -> None:
+        self.stock = stock
+        self.tally = Tally()
+        self._tools = tools
+        self._ways = WaysOfRows(CHORD_SHARE * stock.cell_mm)
+        low, high = np.array(stock.box.low), np.array(stock.box.high)
+        self._reach_mm = float(np.linalg.norm(high - low))
+
+    def add(self, rows: Rows) -> None:
+        """Take the next rows; the tool comes from where the last ones ended."""
+        for ways in self._ways.of(rows):
+            tool = self._tools.get(ways.number)
+            if tool is None:
+                self.tally.unknown_tools.add(ways.number)
+            else:
+                self._sweep(ways, tool)
+
+    def _sweep(self, ways: Ways, tool: Tool) -> None:
+        outline = tool.cutting_profile()
+        rim = _RIM_CELLS * self.stock.cell_mm
+        core = outline.within(max(outline.radius_mm - rim, 0.5 * outline.radius_mm)).rows
+        first_step = min((height for height, _ in (*tool.shank, *tool.holder)), default=self._reach_mm)
+        height = min(first_step, self._reach_mm)
+        if ways.rapid:
+            self._note(ContactKind.RAPID, ways, self._figures(ways, core, rim, height - rim, cuts=False), rim)
+        cut = self._figures(ways, outline.rows, 0.0, height, cuts=True)
+        self.tally.count(ways, cut[:, VOLUME_MM3])
+        self._note(ContactKind.FLUTES, ways, cut, tool.flute_mm)
+        for kind, steps in (
+            (ContactKind.SHANK, tool.shank_profile()),
+            (ContactKind.HOLDER, tool.holder_profile()),
+        ):
+            if len(steps.rows):
+                clear = steps.within(max(steps.radius_mm - rim, 0.5 * steps.radius_mm)).rows
+                self._note(kind, ways, self._figures(ways, clear, 0.0, self._reach_mm, cuts=False), 0.0)
+        if not ways.rapid:
+            turns = ways.rows.turns[ways.ends]
+            for kind, wrong in (
+                (ContactKind.SPINDLE, turns == 0.0),
+                (ContactKind.DIRECTION, turns < 0.0 if not tool.left_hand else turns > 0.0),
+            ):
+                self._note(kind, ways, np.where(wrong[:, None], cut, 0.0), 0.0)
+            moves = np.any(ways.places[1:] != ways.places[:-1], axis=1) & (cut[:, VOLUME_MM3] <= 0.0)
+            self.tally.idle_s += float(ways.duration_s[moves].sum())
+
+    def _figures(
+        self, ways: Ways, outline: Floats, from_mm: float, height_mm: float, *, cuts: bool
+    ) -> Floats:
+        found, stock = np.zeros((len(ways.ends), VOXEL_FIGURES)), self.stock
+        tips = np.ascontiguousarray(ways.places[:, :3])
+        axes = np.ascontiguousarray(ways.axes)
+        sweep_voxels(
+            stock.cells, stock.first, stock.cell_mm, tips, axes, outline, from_mm, height_mm, cuts, found
+        )
+        return found
+
+    def _note(self, kind: ContactKind, ways: Ways, figures: Floats, least_mm: float) -> None:
+        for way in np.flatnonzero(figures[:, DEPTH_MM] > least_mm).tolist():
+            row, found = int(ways.ends[way]), figures[way]
+            place = float(found[AT_X]), float(found[AT_Y]), float(found[AT_Z])
+            t_s, block = float(ways.rows.t_s[row]), int(ways.rows.block[row])
+            self.tally.contacts.note(Contact(kind, block, t_s, place, float(found[DEPTH_MM])))

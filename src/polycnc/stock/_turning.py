@@ -1,0 +1,164 @@
+"""Turn a body by a record of where the tool was, and note what each block removed and what went wrong."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping
+from itertools import pairwise
+
+import numpy as np
+import numpy.typing as npt
+
+from polycnc.stock._contacts import Contact, ContactKind
+from polycnc.stock._cutting import CHORD_SHARE, LEAST_DEPTH_SHARE
+from polycnc.stock._insert import Insert, InsertKind
+from polycnc.stock._insert_sweep import sweep_insert
+from polycnc.stock._rows import Rows
+from polycnc.stock._sweep import AT_X, AT_Y, DEPTH_MM, FIGURES, VOLUME_MM3
+from polycnc.stock._tool import Tool
+from polycnc.stock._turned import Turned
+from polycnc.stock._ways import Tally, Ways, WaysOfRows, runs
+
+Floats = npt.NDArray[np.float64]
+
+_ON_AXIS_MM = 0.01
+_DRILL_STEPS = 400
+
+
+class TurningCutting:
+    """Let turning tools cut a body (see `tally`): X of the record is the distance from the axis, Y is 0.
+
+    What rotates besides is a tool for the middle: a drill. A threading tool leaves one groove for each turn of the
+    spindle. A tool that is not among `tools` cuts nothing.
+    """
+
+    def __init__(self, stock: Turned, tools: Mapping[int, Tool | Insert]) -> None:
+        self.stock = stock
+        self.tally = Tally()
+        self._tools = tools
+        self._ways = WaysOfRows(CHORD_SHARE * stock.cell_mm)
+
+    def add(self, rows: Rows) -> None:
+        """Take the next rows; the tool comes from where the last ones ended."""
+        for ways in self._ways.of(rows):
+            tool = self._tools.get(ways.number)
+            if tool is None:
+                self.tally.unknown_tools.add(ways.number)
+            elif isinstance(tool, Tool):
+                self._drill(ways, tool)
+            else:
+                self._turn(ways, tool)
+
+    def _turn(self, ways: Ways, insert: Insert) -> None:
+        least = LEAST_DEPTH_SHARE * self.stock.cell_mm
+        outline, middle = insert.outline(), insert.middle()
+        places = ways.places[:, [0, 2]] + middle
+        if insert.inside:
+            places[:, 0] *= -1.0
+        figures = np.zeros((len(ways.ends), FIGURES))
+        if ways.rapid:
+            met = figures.copy()
+            self._sweep(insert, outline, places[:-1], places[1:], met, narrower_mm=0.5 * self.stock.cell_mm)
+            self._note(ContactKind.RAPID, ways, met, least)
+        if insert.kind is InsertKind.THREADING and not ways.rapid:
+            self._thread(ways, insert, outline, places, figures)
+        else:
+            self._sweep(insert, outline, places[:-1], places[1:], figures, cuts=True)
+        self.tally.count(ways, figures[:, VOLUME_MM3])
+        self._note(ContactKind.HOLDER, ways, self._held(insert, places), least)
+        if not ways.rapid:
+            at_rest = ways.rows.turns[ways.ends] == 0.0
+            figures[~at_rest, DEPTH_MM] = 0.0
+            self._note(ContactKind.SPINDLE, ways, figures, least)
+            moves = np.any(ways.places[1:] != ways.places[:-1], axis=1) & (figures[:, VOLUME_MM3] <= 0.0)
+            self.tally.idle_s += float(ways.duration_s[moves].sum())
+
+    def _held(self, insert: Insert, places: Floats) -> Floats:
+        """Return how deep what holds a tool gets: it is taken to be as wide as the tool, and a cell on both sides."""
+        found = np.zeros((len(places) - 1, FIGURES))
+        if not math.isinf(insert.reach_mm):
+            wide = 0.5 * insert.flat_mm + insert.nose_mm + self.stock.cell_mm
+            outline = np.array([wide, 0.0, 0.5 * math.pi, 0.0, 0.5 * math.pi, 0.0])
+            above = places + (insert.reach_mm - insert.nose_mm, 0.0)
+            self._sweep(insert, outline, above[:-1], above[1:], found)
+        return found
+
+    def _sweep(
+        self,
+        insert: Insert,
+        outline: Floats,
+        begins: Floats,
+        ends: Floats,
+        figures: Floats,
+        *,
+        narrower_mm: float = 0.0,
+        cuts: bool = False,
+    ) -> None:
+        stock = self.stock
+        begins, ends = np.ascontiguousarray(begins), np.ascontiguousarray(ends)
+        field, limit = (-stock.inner, -stock.outer) if insert.inside else (stock.outer, stock.inner)
+        sweep_insert(
+            stock.first_z, stock.cell_mm, field, limit, begins, ends, outline, narrower_mm, cuts, figures
+        )
+        if insert.inside and cuts:
+            stock.inner[:] = -field
+
+    def _thread(self, ways: Ways, insert: Insert, outline: Floats, places: Floats, figures: Floats) -> None:
+        """Cut where the tool is after each turn of the spindle, from where its block begins."""
+        for first, last in runs(ways.block):
+            row = int(ways.ends[first])
+            way_z = np.abs(np.diff(places[first : last + 1, 1]))
+            duration = np.maximum(ways.duration_s[first:last], 1e-9)
+            lead = float((way_z / duration).max() * 60.0 / max(abs(float(ways.rows.turns[row])), 1e-9))
+            far = np.concatenate(([0.0], np.cumsum(way_z)))
+            at = np.arange(0.0, far[-1] + 1e-9, lead) if 1e-6 < lead < far[-1] else np.zeros(0)
+            stamps = np.column_stack([np.interp(at, far, places[first : last + 1, i]) for i in range(2)])
+            found = np.zeros((len(at), FIGURES))
+            self._sweep(insert, outline, stamps, stamps, found, cuts=True)
+            of = np.minimum(np.searchsorted(far[1:], at), last - first - 1) + first
+            np.add.at(figures[:, VOLUME_MM3], of, found[:, VOLUME_MM3])
+            for way, row_ in zip(of.tolist(), found, strict=True):
+                if row_[DEPTH_MM] > figures[way, DEPTH_MM]:
+                    figures[way, DEPTH_MM:] = row_[DEPTH_MM:]
+
+    def _drill(self, ways: Ways, tool: Tool) -> None:
+        """Let a tool for the middle widen the bore."""
+        profile, stock = tool.cutting_profile(), self.stock
+        radii = np.linspace(0.0, tool.radius_mm, _DRILL_STEPS)
+        heights = np.array([profile.height(float(r)) for r in radii])
+        figures = np.zeros((len(ways.ends), FIGURES))
+        for way, (begin, end) in enumerate(self._on_axis(ways.places)):
+            lowest = min(begin[2], end[2])
+            above = stock.z - lowest
+            reach = np.where(above < 0.0, 0.0, np.interp(above, heights, radii))
+            reach = np.minimum(np.where(above > heights[-1], tool.radius_mm, reach), stock.outer)
+            wider = np.maximum(stock.inner, reach)
+            volume = float(np.pi * np.sum(wider**2 - stock.inner**2) * stock.cell_mm)
+            if volume > 0.0:
+                deep = (wider > stock.inner) & (stock.outer > stock.inner)
+                figures[way, DEPTH_MM] = float(stock.z[deep].max()) - lowest
+                figures[way, VOLUME_MM3], figures[way, AT_Y] = volume, lowest
+                stock.inner[:] = wider
+        least = LEAST_DEPTH_SHARE * stock.cell_mm
+        if ways.rapid:
+            self._note(ContactKind.RAPID, ways, figures, least)
+        self.tally.count(ways, figures[:, VOLUME_MM3])
+        self._note(ContactKind.FLUTES, ways, figures, tool.flute_mm)
+        if not ways.rapid:
+            figures[ways.rows.turns[ways.ends] != 0.0, DEPTH_MM] = 0.0
+            self._note(ContactKind.SPINDLE, ways, figures, least)
+
+    @staticmethod
+    def _on_axis(places: Floats) -> Iterator[tuple[Floats, Floats]]:
+        """Yield the ways, those beside the axis far above: they drill nothing."""
+        away = np.array([0.0, 0.0, np.inf])
+        for begin, end in pairwise(places):
+            on_axis = max(abs(begin[0]), abs(end[0])) <= _ON_AXIS_MM
+            yield (begin, end) if on_axis else (away, away)
+
+    def _note(self, kind: ContactKind, ways: Ways, figures: Floats, least_mm: float) -> None:
+        for way in np.flatnonzero(figures[:, DEPTH_MM] > least_mm).tolist():
+            row, found = int(ways.ends[way]), figures[way]
+            place = float(found[AT_X]), 0.0, float(found[AT_Y])
+            t_s, block = float(ways.rows.t_s[row]), int(ways.rows.block[row])
+            self.tally.contacts.note(Contact(kind, block, t_s, place, float(found[DEPTH_MM])))

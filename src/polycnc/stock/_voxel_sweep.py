@@ -1,0 +1,135 @@
+"""Move a tool with a turning axis through a grid of points: those that get into it are removed.
+
+Between two rows of a record the tool is set down so often that no point of it goes farther than a share of a cell.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import numpy.typing as npt
+
+from polycnc.kernel import compiled, entry
+from polycnc.stock._profile import TO_R
+from polycnc.stock._sweep import AT_X, AT_Y, DEPTH_MM, VOLUME_MM3, level
+
+Floats = npt.NDArray[np.float64]
+Cells = npt.NDArray[np.uint8]
+
+AT_Z = AT_Y + 1
+VOXEL_FIGURES = AT_Z + 1
+_STEP_CELLS = 0.5
+_EVEN = 1e-12
+
+
+@compiled
+def _remove(
+    cells: Cells,
+    first: Floats,
+    cell_mm: float,
+    tip: Floats,
+    axis: Floats,
+    rows: Floats,
+    figures: Floats,
+    cuts: bool,
+    begin: npt.NDArray[np.int64],
+    last: npt.NDArray[np.int64],
+    end: Floats,
+) -> None:
+    """Look at, or remove, the points in a tool: `figures` [8] has the tool's height last.
+
+    `begin` and `last` [3] are room for places, `end` [6] is tip and axis at the end of the way.
+    """
+    radius, height = rows[rows.shape[0] - 1, TO_R], figures[VOXEL_FIGURES]
+    for i in range(3):
+        reach = radius * math.sqrt(max(0.0, 1.0 - axis[i] * axis[i]))
+        top = tip[i] + height * axis[i]
+        begin[i] = max(0, math.ceil((min(tip[i], top) - reach - first[i]) / cell_mm))
+        last[i] = min(cells.shape[2 - i] - 1, math.floor((max(tip[i], top) + reach - first[i]) / cell_mm))
+    square = 1.0 - axis[0] * axis[0]
+    for iz in range(begin[2], last[2] + 1):
+        dz = first[2] + iz * cell_mm - tip[2]
+        for iy in range(begin[1], last[1] + 1):
+            dy = first[1] + iy * cell_mm - tip[1]
+            up = axis[1] * dy + axis[2] * dz
+            up_end = (first[1] + iy * cell_mm - end[1]) * end[4] + (first[2] + iz * cell_mm - end[2]) * end[5]
+            rest = dy * dy + dz * dz - up * up - radius * radius
+            first_x, last_x = begin[0], last[0]
+            if square > _EVEN:  # where a line along X is within the radius of the axis
+                half = axis[0] * up / square
+                root2 = half * half - rest / square
+                if root2 < 0.0:
+                    continue
+                root = math.sqrt(root2)
+                first_x = max(first_x, math.ceil((tip[0] + half - root - first[0]) / cell_mm))
+                last_x = min(last_x, math.floor((tip[0] + half + root - first[0]) / cell_mm))
+            elif rest > 0.0:
+                continue
+            for ix in range(first_x, last_x + 1):
+                if cells[iz, iy, ix] == 0:
+                    continue
+                dx = first[0] + ix * cell_mm - tip[0]
+                along = axis[0] * dx + up
+                if along < 0.0 or along > height:
+                    continue
+                beside2 = dx * dx + dy * dy + dz * dz - along * along
+                if along < level(rows, math.sqrt(max(0.0, beside2))):
+                    continue
+                figures[VOLUME_MM3] += 1.0
+                depth = max(along, (first[0] + ix * cell_mm - end[0]) * end[3] + up_end)
+                if depth > figures[DEPTH_MM]:
+                    figures[DEPTH_MM] = depth
+                    figures[AT_X], figures[AT_Y], figures[AT_Z] = tip[0] + dx, tip[1] + dy, tip[2] + dz
+                if cuts:
+                    cells[iz, iy, ix] = 0
+
+
+@entry(steps=lambda cells, first, cell_mm, tips, *_: 2000 * len(tips))
+def sweep_voxels(
+    cells: Cells,
+    first: Floats,
+    cell_mm: float,
+    tips: Floats,
+    axes: Floats,
+    rows: Floats,
+    from_mm: float,
+    height_mm: float,
+    cuts: bool,
+    figures: Floats,
+) -> None:
+    """Move a tool from each of `tips` [n + 1, 3] to the next, with its axis [n + 1, 3], upwards, turning along.
+
+    `cells` [along z, y, x] are 1 where there is material at `first + place * cell_mm`. The tool has the outline `rows`,
+    from `from_mm` above its tip, and is `height_mm` high. `figures` [n, 7] get volume, how far up the tool it met
+    something, seen from the end of the way too, and where that was.
+    """
+    tip, axis, found = np.empty(3), np.empty(3), np.zeros(VOXEL_FIGURES + 1)
+    begin, last, end = np.zeros(3, np.int64), np.zeros(3, np.int64), np.zeros(6)
+    for n in range(tips.shape[0] - 1):
+        far = 0.0
+        for i in range(3):
+            end[i], end[3 + i] = tips[n + 1, i], axes[n + 1, i]
+        for top in range(2):
+            moved = 0.0
+            for i in range(3):
+                step = tips[n + 1, i] - tips[n, i] + top * height_mm * (axes[n + 1, i] - axes[n, i])
+                moved += step * step
+            far = max(far, math.sqrt(moved))
+        steps = max(1, math.ceil(far / (_STEP_CELLS * cell_mm)))
+        found[:] = 0.0
+        found[VOXEL_FIGURES] = height_mm
+        for step in range(steps + 1):
+            share = step / steps
+            length = 0.0
+            for i in range(3):
+                axis[i] = axes[n, i] + share * (axes[n + 1, i] - axes[n, i])
+                length += axis[i] * axis[i]
+            length = math.sqrt(length)
+            for i in range(3):
+                axis[i] /= length
+                tip[i] = tips[n, i] + share * (tips[n + 1, i] - tips[n, i]) + from_mm * axis[i]
+            _remove(cells, first, cell_mm, tip, axis, rows, found, cuts, begin, last, end)
+        for i in range(VOXEL_FIGURES):
+            figures[n, i] = found[i]
+        figures[n, VOLUME_MM3] *= cell_mm**3

@@ -1,0 +1,106 @@
+"""A record as ways of one tool each, and what they remove, added up."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+import numpy.typing as npt
+
+from polycnc.stock._chords import find_chords
+from polycnc.stock._contacts import Contacts, Idle
+from polycnc.stock._rows import Rows, joined
+
+Floats = npt.NDArray[np.float64]
+Integers = npt.NDArray[np.int64]
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class Ways:
+    """Hold ways of one tool, all at rapid or none: `places` [n + 1, 3] of its tip, and the rows at their ends."""
+
+    places: Floats
+    ends: Integers
+    begins: Integers
+    rows: Rows
+
+    @property
+    def axes(self) -> Floats:
+        """The axis of the tool at each place [n + 1, 3]."""
+        axis = np.broadcast_to(self.rows.axis, self.rows.tip.shape)
+        return axis[np.concatenate((self.begins[:1], self.ends))]
+
+    @property
+    def number(self) -> int:
+        """The number of the tool."""
+        return int(self.rows.tool[self.ends[0]])
+
+    @property
+    def rapid(self) -> bool:
+        """Whether they are at rapid."""
+        return bool(self.rows.rapid[self.ends[0]])
+
+    @property
+    def block(self) -> Integers:
+        """The number of the block of each way."""
+        return self.rows.block[self.ends]
+
+    @property
+    def duration_s(self) -> Floats:
+        """How long each way takes."""
+        return self.rows.t_s[self.ends] - self.rows.t_s[self.begins]
+
+
+class Tally:
+    """Add up what blocks and tools remove, and keep what goes wrong."""
+
+    def __init__(self) -> None:
+        self.by_block_mm3 = np.zeros(0)
+        self.by_tool_mm3: dict[int, float] = {}
+        self.contacts = Contacts()
+        self.unknown_tools: set[int] = set()
+        self.idle: list[Idle] = []
+        self.idle_s = 0.0
+
+    def count(self, ways: Ways, volume_mm3: Floats) -> None:
+        """Count what each way has removed."""
+        blocks = ways.block
+        if len(self.by_block_mm3) <= blocks.max():
+            self.by_block_mm3 = np.concatenate((self.by_block_mm3, np.zeros(int(blocks.max()) + 1)))
+        np.add.at(self.by_block_mm3, blocks, volume_mm3)
+        self.by_tool_mm3[ways.number] = self.by_tool_mm3.get(ways.number, 0.0) + float(volume_mm3.sum())
+
+
+class WaysOfRows:
+    """Make ways of pieces of a record; the tool comes from where the last piece ended."""
+
+    def __init__(self, tolerance_mm: float) -> None:
+        self._tolerance_mm = tolerance_mm
+        self._last: Rows | None = None  # one row
+
+    def of(self, rows: Rows) -> Iterator[Ways]:
+        """Yield the ways of the next rows."""
+        if not len(rows.t_s):
+            return
+        rows = rows if self._last is None else joined([self._last, rows])
+        self._last = rows.at(np.array([len(rows.t_s) - 1]))
+        ends = np.zeros(len(rows.t_s), np.int64)
+        count = find_chords(rows.guides(), rows.keys(), self._tolerance_mm, ends)
+        nodes = np.concatenate(([0], ends[:count]))
+        tool, rapid = rows.tool[nodes], rows.rapid[nodes]
+        # Another tool has not come that way.
+        way = np.where(tool[1:] == tool[:-1], 2 * tool[1:] + rapid[1:], -1)
+        # Each way at rapid meets what the one before has left.
+        singly = np.where(way % 2 == 1, 2 * np.arange(len(way)) + 1, -2 - 2 * way)
+        for first, last in runs(singly):
+            if way[first] >= 0:
+                places = np.ascontiguousarray(rows.tip[nodes[first : last + 1]])
+                yield Ways(places, nodes[first + 1 : last + 1], nodes[first:last], rows)
+
+
+def runs(values: Integers) -> Iterator[tuple[int, int]]:
+    """Yield from where to where values are equal."""
+    begins = np.flatnonzero(np.diff(values, prepend=~values[:1]))
+    return pairwise([*begins.tolist(), len(values)])

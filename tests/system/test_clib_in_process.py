@@ -1,0 +1,120 @@
+"""The library with the machines in the program's own process: the same answers and bytes; time passes by polling."""
+
+from __future__ import annotations
+
+import ctypes
+import random
+import shutil
+import subprocess
+import sysconfig
+from pathlib import Path
+
+import pytest
+
+from polycnc.controllers.fanuc import PowerMate, fwlib
+from polycnc.controllers.fanuc.clib import FWLIB
+from polycnc.errors import UsageError
+from polycnc.machine import Poll
+from polycnc.servers.calls import build_command, build_library, library_of, write_library
+from polycnc.servers.inside import inside
+from support.c_hold import Hold
+from support.c_library import NO_COMPILER
+from support.command import environment
+from support.facade_programs import SYSTEM, facade_says
+from support.fwlib_calls import AT_HOME, HANDLE, before, number_of, size_of
+
+EXAMPLES = Path(__file__).parents[2] / "examples"
+PROGRAMS = {
+    "fanuc_macro": "fanuc",
+    "apci_jog": "apci",
+    "apci_gantry": "apci",
+    "imc_move": "imc",
+    "imc_line_shaft": "imc",
+}
+SAID = {
+    "apci_jog": "init 0, board 4, 3 axes\nat 12.500\n",
+    "apci_gantry": "init 0, 3 axes\nhomed 3 axes\nat 60.000 50.000 0.000\nerrors 0\n",
+    "imc_move": "adapters 0: 1\nopen 0\nmove 0\nat 6250, moving 0\nclose 0\n",
+    "imc_line_shaft": "open 0\nbefore: the cutter is at 0\nafter: the cutter runs as the master: 1\n"
+    "slaves by the master: 0.50 -1.00\nclose 0\n",
+}
+"""The arc of the gantry is half a circle around (60, 25) from (60, 0); the gears are 0.5 and -1."""
+
+
+def _built(kind: str, folder: Path) -> Path:
+    if shutil.which("gcc") is None:
+        pytest.skip(NO_COMPILER)
+    told = sysconfig.get_config_vars()
+    if not told["Py_ENABLE_SHARED"] or not (Path(told["INCLUDEPY"]) / "Python.h").exists():
+        pytest.skip("no shared library of Python, or no Python.h, here")
+    write_library(library_of(kind), folder, in_process=True)
+    return build_library(library_of(kind), folder, "linux", in_process=True)
+
+
+def test_functions_answer_and_write_as_the_facade_in_the_same_process(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.delenv("POLYCNC_SERVED", raising=False)
+    library = ctypes.CDLL(str(_built("fanuc", tmp_path)))
+    session = fwlib.Session()
+    twin = PowerMate(3, characters=128_000)
+    twin.advance(1)
+    session.attach(0, twin, Poll(1))
+    handle = ctypes.c_uint16()
+    assert (library.cnc_allclibhndl(ctypes.byref(handle)), handle.value) == (0, HANDLE)
+    assert session.cnc_allclibhndl() == (0, HANDLE)
+    hold = Hold(FWLIB, library, session, random.Random(31), number_of, size_of, before)
+    calls = [each for each in FWLIB.calls if each.function.name not in AT_HOME]
+    for _ in range(4):
+        for call in hold.dice.sample(calls, len(calls)):
+            hold.call(call)
+    assert {0, 2, 3, 5, -8} <= hold.codes
+    assert library.cnc_freelibhndl(handle) == 0
+    assert library.cnc_statinfo(handle, None) == fwlib.EW_HANDLE
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("name", PROGRAMS)
+def test_a_program_says_the_same_without_a_server(name: str, tmp_path: Path) -> None:
+    kind = PROGRAMS[name]
+    _built(kind, tmp_path)
+    program = tmp_path / "client"
+    source = EXAMPLES / "c" / f"{name}.c"
+    subprocess.run(
+        ["gcc", "-std=c11", "-I", tmp_path, "-o", program, source, "-L", tmp_path, f"-l{library_of(kind).name}",
+         f"-Wl,-rpath,{tmp_path}"], check=True,
+    )  # fmt: skip
+    file = tmp_path / "plant.toml"
+    rows = {
+        "apci": f'controller = "apci"\nfile = "{SYSTEM}"',
+        "imc": 'controller = "imc"\nfile = "card.toml"',
+        "fanuc": 'controller = "fanuc"',
+    }
+    (tmp_path / "card.toml").write_text("number_of_axes = 4\nready = true\n")
+    file.write_text(f'[doors]\nhttp = 0\n[[machine]]\nname = "a"\n{rows[kind]}\n')
+    ran = subprocess.run(
+        [program], env=environment(POLYCNC_SERVED=str(file)), capture_output=True, text=True, timeout=60,
+        check=False,
+    )  # fmt: skip
+    assert (ran.stdout, ran.stderr) == (SAID.get(name) or facade_says(), "")
+
+
+def test_a_file_without_such_a_machine_has_none(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    file = tmp_path / "plant.toml"
+    file.write_text('[doors]\nhttp = 0\n[[machine]]\nname = "a"\ncontroller = "plain"\n')
+    monkeypatch.setenv("POLYCNC_SERVED", str(file))
+    assert inside("fwlib32").devices == []
+    with pytest.raises(UsageError, match="there is no C library 'mcug7'"):
+        inside("mcug7")
+
+
+@pytest.mark.parametrize("target", ["win32", "win64", "macos"])
+def test_it_is_for_linux_alone(target: str) -> None:
+    with pytest.raises(UsageError, match=f"is not built for {target}"):
+        build_command(library_of("fanuc"), target, in_process=True)
+
+
+def test_an_interpreter_without_a_shared_library_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(sysconfig, "get_config_vars", lambda: {"Py_ENABLE_SHARED": 0})
+    with pytest.raises(UsageError, match="has no shared library"):
+        build_command(library_of("fanuc"), "linux", in_process=True)

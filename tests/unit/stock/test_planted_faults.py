@@ -1,0 +1,163 @@
+"""Programs with one planted fault each: `inspect` finds it at its block, and nothing in the same program without it."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+from polycnc import runner
+from polycnc.errors import UsageError
+from polycnc.machine import MachineConfig, ToolConfig, parse_machine, preset_text
+from polycnc.stock import Mesh, fixtures_of
+
+manifold3d = pytest.importorskip("manifold3d")
+
+SLOTS = """G21 G90 G17 G94 G54
+T1 M6
+S5000 M3
+G43 H1 G0 X-10 Y16 Z20
+Z-4
+G1 X70 F1500
+G0 Z20
+X-10 Y30
+Z-4
+G1 X70
+G0 Z20
+M30
+"""
+PLATE = "box=0,0,-20,60,42,0"
+CLAMP = "box=20,-15,-20,30,4,15"
+LENGTH = 62.0
+TOO_HIGH = "axis Z would go to 1.000 mm, past its soft limit of 0.000 mm"
+MILL = ToolConfig(length_mm=LENGTH, radius_mm=5.0, shape="flat", flute_mm=12.0)
+TOOLS = {
+    1: MILL.model_copy(update={"shank": ((12.0, 8.0),), "holder": ((40.0, 50.0), (60.0, 63.0))}),
+    2: MILL.model_copy(update={"holder": ((12.0, 50.0),)}),
+    3: MILL.model_copy(update={"holder": ((3.0, 20.0),)}),
+    4: MILL.model_copy(update={"shank": ((3.0, 14.0),)}),
+    5: MILL.model_copy(update={"left_hand": True}),
+    6: MILL.model_copy(update={"flute_mm": 3.5}),
+}
+# What is right, what is wrong instead, and all that is said of it: the error, or keys of remarks, each with its line.
+FAULTS: dict[str, tuple[str, str, list[tuple[str, int]]]] = {
+    "a rapid across the plate": ("G0 Z20\nX-10 Y30", "G0 X-10 Y30", [("gouge", 7), ("rapid", 7)]),
+    "a rapid down into the plate": (
+        "Z-4\nG1 X70 F1500",
+        "X30 Z-4\nG1 X70 F1500",
+        [("rest", 1), ("rapid", 5)],
+    ),
+    "a low holder": ("T1 M6", "T3 M6", [("holder", 6), ("holder", 10)]),
+    "a wide shank": ("T1 M6", "T4 M6", [("shank", 6), ("shank", 10)]),
+    "short flutes": ("T1 M6", "T6 M6", [("flutes", 6), ("flutes", 10)]),
+    "a spindle at rest": ("S5000 M3\n", "S5000\n", [("spindle_off", 6), ("spindle", 6), ("spindle", 10)]),
+    "the other way": ("S5000 M3\n", "S5000 M4\n", [("direction", 6), ("direction", 10)]),
+    "a tool for the other way": ("T1 M6", "T5 M6", [("direction", 6), ("direction", 10)]),
+    "a tool in the clamp": ("X-10 Y30\n", "Z10 X25 Y0\nZ20\nX-10 Y30\n", [("fixture", 8), ("fixture", 9)]),
+    "a holder in the clamp": ("T1 M6", "T2 M6", [("fixture_holder", 6)]),
+    "over-travel with the tool's length": ("G0 Z20\nM30", "G0 Z69\nM30", [(TOO_HIGH, 11)]),
+    "a gouge in a floor": ("Z-4\nG1 X70\n", "Z-4.05\nG1 X70\n", [("gouge", 10)]),
+    "a gouge in a wall": ("X-10 Y30", "X-10 Y30.05", [("gouge", 10)]),
+    "something left": ("Z-4\nG1 X70\n", "Z-3.95\nG1 X70\n", [("rest", 1)]),
+    "a feed in the air": ("G0 Z20\nM30", "G0 Z20\nG1 X-10\nM30", [("air", 12)]),
+}
+
+
+@pytest.fixture(scope="module")
+def machine() -> MachineConfig:
+    text = preset_text("mill3").replace('name = "Z"', 'name = "Z"\nsoft_limits_mm = [-400, 0]')
+    config = parse_machine(text, "mill.toml")
+    return config.model_copy(update={"tools": TOOLS, "offsets": {"G54": {"Z": -130.0}}})
+
+
+@pytest.fixture(scope="module")
+def target(tmp_path_factory: pytest.TempPathFactory) -> str:
+    """The plate with its slots, exactly."""
+    body = manifold3d.Manifold.cube([60.0, 42.0, 20.0]).translate([0.0, 0.0, -20.0])
+    for y in (11.0, 25.0):
+        body -= manifold3d.Manifold.cube([80.0, 10.0, 10.0]).translate([-10.0, y, -4.0])
+    found: Any = body.to_mesh()
+    file = tmp_path_factory.mktemp("target") / "part.stl"
+    vertices = np.array(found.vert_properties[:, :3], np.float64)
+    Mesh(vertices, np.array(found.tri_verts, np.int64)).write_stl(file)
+    return str(file)
+
+
+def looked_at(text: str, machine: MachineConfig, target: str) -> list[tuple[str, int]]:
+    report = runner.inspect(
+        text, machine, "fanuc", stock=PLATE, resolution_mm=0.2, fixtures=[CLAMP], target=target
+    )
+    errors = [(error.what, error.position.line if error.position else 0) for error in report.errors]
+    return errors + [(each.key, each.position.line if each.position else 0) for each in report.remarks]
+
+
+def test_what_is_right_is_not_remarked(machine: MachineConfig, target: str) -> None:
+    assert looked_at(SLOTS, machine, target) == []
+    left = SLOTS.replace("T1 M6", "T5 M6").replace("M3\n", "M4\n")
+    assert looked_at(left, machine, target) == []
+
+
+@pytest.mark.parametrize("fault", FAULTS)
+def test_a_planted_fault_is_found_at_its_block(fault: str, machine: MachineConfig, target: str) -> None:
+    right, wrong, said = FAULTS[fault]
+    assert SLOTS.count(right) == 1
+    assert looked_at(SLOTS.replace(right, wrong), machine, target) == said
+
+
+def test_a_gouge_says_how_deep_it_is(machine: MachineConfig, target: str) -> None:
+    """In a floor as in a wall, to some micrometres; the volume is that of the floor, 60 x 10 mm."""
+    wanted = {"floor": ("Z-4\nG1 X70\n", "Z-4.05\nG1 X70\n"), "wall": ("X-10 Y30", "X-10 Y30.05")}
+    found = {}
+    for where, (right, wrong) in wanted.items():
+        text = SLOTS.replace(right, wrong)
+        options = {"stock": PLATE, "resolution_mm": 0.2, "target": target, "tolerance_mm": 0.03}
+        found[where] = runner.run(text, machine, "fanuc", check=False, **options).machined  # type: ignore[call-overload]
+        [gouge] = found[where].collisions
+        assert gouge.depth_mm == pytest.approx(0.05, abs=0.003)
+        assert gouge.line == 10
+    assert found["floor"].comparison.gouge_mm3 == pytest.approx(60.0 * 10.0 * 0.05, rel=0.05)
+    assert found["floor"].comparison.rest_place is None
+    assert found["floor"].as_dict()["target"]["tolerance_mm"] == 0.03
+
+
+@pytest.mark.parametrize(
+    ("arguments", "wrong"),
+    [
+        ({"fixtures": ["box=1,2,3"]}, "no body"),
+        ({"fixtures": ["vice"]}, "'vice' is no fixture"),
+        ({"fixtures": ["box=0,0,0,1,1,inf"]}, "no body"),
+        ({"fixtures": [CLAMP] * 51}, "51 fixtures"),
+        ({"fixtures": ["missing.stl"]}, "cannot read"),
+        ({"fixtures": ["box=-9e5,-9e5,0,9e5,9e5,1"]}, "cells"),
+        ({"target": "part.step"}, "'part.step' is no target"),
+        ({"target": "missing.stl"}, "cannot read"),
+        ({"target": "part.stl", "tolerance_mm": 0.0}, "tolerance of 0 mm"),
+        ({"target": "part.stl", "tolerance_mm": float("nan")}, "tolerance of nan"),
+        ({"tolerance_mm": 0.1}, "without a target"),
+        ({"stock": None, "target": "part.stl"}, "without stock"),
+        ({"stock": None, "fixtures": [CLAMP]}, "without stock"),
+    ],
+)
+def test_wrong_fixtures_and_targets_are_refused(arguments: dict[str, Any], wrong: str) -> None:
+    with pytest.raises(UsageError, match=wrong) as refused:
+        runner.run(SLOTS, None, "fanuc", check=False, **{"stock": PLATE, "resolution_mm": None, **arguments})
+    assert refused.value.hint
+
+
+def test_fixtures_have_as_many_cells_as_a_body_in_all(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("polycnc.stock._fixtures.MOST_CELLS", 1000)
+    assert [each.heights.size for each in fixtures_of(["box=0,0,0,10,6,1"], 0.25)] == [960]
+    with pytest.raises(UsageError, match="more than 1,000 cells of 0"):
+        fixtures_of(["box=0,0,0,10,6,1", "box=20,0,0,23,4,1"], 0.25)
+
+
+def test_a_tool_of_the_machine_file_that_cannot_be_is_refused() -> None:
+    for lines, wrong in (
+        ('shape = "bull"\nradius_mm = 4\ncorner_mm = 5', "tool 3 of 'mill3': a corner radius of 5 mm"),
+        ('shape = "ball"', "without a radius"),
+    ):
+        config = parse_machine(f"{preset_text('mill3')}\n[tools.3]\n{lines}\n", "m.toml")
+        with pytest.raises(UsageError, match=wrong) as refused:
+            runner.run(SLOTS, config, "fanuc", check=False, stock=PLATE)
+        assert refused.value.hint

@@ -1,0 +1,164 @@
+"""Tools that come from any side: volumes against exact bodies, faults at their blocks, a table that turns."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+import pytest
+
+from polycnc import runner
+from polycnc.errors import UsageError
+from polycnc.machine import load_machine
+from polycnc.stock import Box, ContactKind, Form, Rows, Tool, ToolKind, TurnedCutting, Voxels
+
+BOX = Box((-10.0, -8.0, -9.0), (11.0, 9.0, 0.5))
+MILL = Tool(ToolKind.FLAT, 6.0, flute_mm=30.0)
+
+
+def tilted(degrees: float) -> tuple[float, float, float]:
+    """Return the direction of a tool that leans towards +X and a little towards +Y."""
+    a = math.radians(degrees)
+    x, y, z = math.sin(a), 0.4 * math.sin(a), math.cos(a)
+    length = math.sqrt(x * x + y * y + z * z)
+    return x / length, y / length, z / length
+
+
+def record(
+    places: list[tuple[float, float, float]], axes: list[tuple[float, float, float]], rapid: list[bool]
+) -> Rows:
+    n = len(places)
+    whole = np.arange(n)
+    return Rows(
+        whole + 1.0,
+        np.array(places),
+        whole + 10,
+        np.full(n, 4),
+        np.array(rapid),
+        np.full(n, 900.0),
+        np.array(axes),
+    )
+
+
+def drilled(degrees: float, cell: float, *, rapid: bool = False, tool: Tool = MILL) -> TurnedCutting:
+    """Move a tool along its leaning axis through the box, and back at rapid."""
+    axis = np.array(tilted(degrees))
+    deep, high = np.array([0.7, -0.4, -6.1]), np.array([0.7, -0.4, -6.1]) + 25.0 * axis
+    places = [tuple(each) for each in (high, deep, high)]
+    found = TurnedCutting(Voxels(BOX, cell), {4: tool})
+    found.add(record(places, [tuple(axis)] * 3, [True, rapid, True]))  # type: ignore[arg-type]
+    return found
+
+
+@pytest.mark.parametrize("degrees", [0.0, 31.0, 75.0])
+def test_a_hole_along_a_leaning_axis(degrees: float) -> None:
+    manifold3d = pytest.importorskip("manifold3d")
+    found = drilled(degrees, 0.2)
+    sizes = [b - a for a, b in zip(BOX.low, BOX.high, strict=True)]
+    block: Any = manifold3d.Manifold.cube(sizes).translate(BOX.low)
+    x, y, z = tilted(degrees)
+    turn = math.degrees(math.acos(z))
+    tool = manifold3d.Manifold.cylinder(60.0, 3.0, circular_segments=256)
+    tool = tool.rotate([0.0, turn, 0.0]).rotate([0.0, 0.0, math.degrees(math.atan2(y, x)) if turn else 0.0])
+    exact = (block ^ tool.translate([0.7, -0.4, -6.1])).volume()
+    assert found.tally.by_tool_mm3[4] == pytest.approx(exact, rel=0.02)
+    assert found.tally.by_block_mm3[11] == found.tally.by_tool_mm3[4]
+    assert found.tally.contacts.all() == []
+    assert not found.stock.holds(0.7, -0.4, -5.5)
+    assert found.stock.holds(-9.0, 7.0, -8.0)
+
+
+def test_a_tool_that_turns_in_its_place_leaves_a_wedge() -> None:
+    """A ball whose middle stays where it is while its axis leans from one side to the other: half a disc, and edges."""
+    ball = Tool(ToolKind.BALL, 4.0)
+    middle, lean = np.array([0.5, 0.3, -3.0]), math.radians(40.0)
+    angles = np.linspace(-lean, lean, 81)
+    axes = np.column_stack((np.sin(angles), np.zeros(81), np.cos(angles)))
+    found = TurnedCutting(Voxels(BOX, 0.2), {4: ball})
+    found.add(record((middle - 2.0 * axes).tolist(), axes.tolist(), [True] + [False] * 80))
+    # By slices across Y: within the radius there, a sector of rods between two leaning lines, up to the top.
+    total = 0.0
+    for y in (np.arange(50) + 0.5) / 50 * 4.0 - 2.0:
+        half = math.sqrt(4.0 - y * y)
+        x, z = np.meshgrid(np.arange(-8.0, 8.0, 0.02), np.arange(-2.0, 3.5, 0.02))
+        angle = np.clip(np.arctan2(x, z), -lean, lean)
+        along = np.maximum(x * np.sin(angle) + z * np.cos(angle), 0.0)
+        total += (
+            float(np.sum(np.hypot(x - along * np.sin(angle), z - along * np.cos(angle)) <= half))
+            * 0.02**2
+            * 0.08
+        )
+    assert found.tally.by_tool_mm3[4] == pytest.approx(total, rel=0.02)
+
+
+def test_faults_with_a_leaning_tool() -> None:
+    [crash] = drilled(31.0, 0.25, rapid=True).tally.contacts.all()
+    assert (crash.kind, crash.block) == (ContactKind.RAPID, 11)
+    short = Tool(ToolKind.FLAT, 6.0, flute_mm=5.0)
+    assert [(each.kind, each.block) for each in drilled(31.0, 0.25, tool=short).tally.contacts.all()] == [
+        (ContactKind.FLUTES, 11)
+    ]
+    low = Tool(ToolKind.FLAT, 6.0, holder=((4.0, 9.0),))
+    assert ContactKind.HOLDER in {each.kind for each in drilled(31.0, 0.25, tool=low).tally.contacts.all()}
+    left = Tool(ToolKind.FLAT, 6.0, left_hand=True)
+    assert [each.kind for each in drilled(31.0, 0.25, tool=left).tally.contacts.all()] == [
+        ContactKind.DIRECTION
+    ]
+
+
+TABLE = """(T1 D=6. - flat end mill)
+T1 M6
+S900 M3
+G0 X0 Y0 Z80 A-90 C0
+X0 Y0 Z30
+G1 Z12 F400
+G0 Z80
+C120
+Z30
+G1 Z12
+G0 Z80
+M30
+"""
+
+
+def test_a_table_that_turns_shows_its_sides_to_the_tool() -> None:
+    """Two holes of 6 mm into the side of a cylinder of 40 mm, 8 mm deep, 120 degrees apart."""
+    config = load_machine("mill5").model_copy(update={"start": {"Z": 80.0}})
+    found = runner.run(TABLE, config, "fanuc", stock="cylinder=40,-15,15", resolution_mm=0.4, check=False)
+    assert found.machined is not None
+    # The cylinder's side is curved: a hole from its outermost place, less what is above the side.
+    y = (np.arange(2000) + 0.5) / 2000 * 6.0 - 3.0
+    exact = 2.0 * float(np.sum(2.0 * np.sqrt(9.0 - y**2) * (np.sqrt(400.0 - y**2) - 12.0)) * 6.0 / 2000)
+    assert found.removed_mm3 == pytest.approx(exact, rel=0.03)
+    assert found.collisions == []
+    lines = {found.machined.blocks[n].line for n in np.flatnonzero(found.machined.removed_mm3).tolist()}
+    assert lines == {6, 10}
+    wrong = runner.run(
+        TABLE.replace("G1 Z12 F400", "Z12"), config, "fanuc", stock="cylinder=40,-15,15", check=False
+    )
+    assert (wrong.collisions[0].kind, wrong.collisions[0].line) == (ContactKind.RAPID, 6)
+
+
+def test_the_surface_of_points_has_their_volume() -> None:
+    body = drilled(31.0, 0.5).stock
+    assert body.mesh().volume_mm3 == pytest.approx(body.volume_mm3)
+    whole = Voxels(BOX, 0.5)
+    assert whole.volume_mm3 == pytest.approx(21.0 * 17.0 * 9.5)
+    assert whole.mesh().vertices.min(axis=0).tolist() == list(BOX.low)
+
+
+@pytest.mark.parametrize(
+    ("wrong", "text"),
+    [
+        (lambda: Voxels(Box((0.0, 0.0, 0.0), (1.0, 0.0, 1.0)), 0.1), "no volume"),
+        (lambda: Voxels(Box((0.0, 0.0, 0.0), (100.0, 100.0, 100.0)), 0.02), "125,000,000,000 cells"),
+        (lambda: Voxels(BOX, float("nan")), "resolution of nan"),
+        (lambda: Form("part.stl").voxels(), "'part.stl' where an axis turns"),
+        (lambda: Form("box=0,0,0,1,1,1", fixtures=("box=0,0,0,1,1,1",)).voxels(), "fixtures and targets"),
+    ],
+)
+def test_what_no_body_of_points_has_is_refused(wrong: Any, text: str) -> None:
+    with pytest.raises(UsageError, match=text) as refused:
+        wrong()
+    assert refused.value.hint

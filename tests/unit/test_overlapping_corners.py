@@ -1,0 +1,123 @@
+"""Corners beside helices and between planes: one motion begins while the other ends, as LinuxCNC's planner does it."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import numpy.typing as npt
+import pytest
+
+import polycnc
+from polycnc.kernel import BY_SHARE, KernelState, append_arc, append_line, start_path
+from polycnc.kernel._geometry import segment_point, segment_tangent
+from polycnc.kernel._segments import ARC, LINE, OVERLAP
+from polycnc.machine import LinearAxis, MachineConfig, PathConfig
+from support.random_paths import PathSettings, machine, overload, prepare, run_recorded
+
+Floats = npt.NDArray[np.float64]
+
+ROUTER = MachineConfig(
+    name="router",
+    axis=tuple(
+        LinearAxis(name=name, vmax_mm_s=v, amax_mm_s2=a)
+        for name, v, a in (("X", 150.0, 800.0), ("Y", 150.0, 800.0), ("Z", 80.0, 500.0))
+    ),
+    path=PathConfig(corner_share=0.1, rounding_share=0.5, last_share=0.5, rounding_gap_s=0.004),
+)
+
+
+def queued(tolerance: float, *, by_share: bool = True) -> KernelState:
+    """Return a path: down a line, half a turn of a helix, a flat half turn in another plane, and away."""
+    shares = (0.1, 0.5, 0.5) if by_share else None
+    state = machine(np.random.default_rng(11), PathSettings(tolerance=tolerance, shares=shares), segments=64)
+    where, row = state.seg, state.paths
+    append_line(where, row, 0, state.limits, np.array([0.0, 0.0, -7.0]), 60.0, 0, 1)
+    append_arc(where, row, 0, state.limits, np.array([8.0, 0, -4.6]), 0, 1, 4.0, 0.0, math.pi, 60.0, 0, 2)
+    append_arc(where, row, 0, state.limits, np.array([8.0, 6.0, -4.6]), 1, 2, 3.0, -4.6, -math.pi, 60.0, 0, 3)
+    append_line(where, row, 0, state.limits, np.array([15.0, 6.0, -3.0]), 60.0, 0, 4)
+    return state
+
+
+def kinds(state: KernelState) -> list[int]:
+    return [int(kind) for kind in state.seg.row["kind"][: state.paths.row[0]["tail"]]]
+
+
+def test_the_pieces_lie_between_the_motions_and_go_on_in_their_directions() -> None:
+    state = queued(0.05)
+    assert kinds(state) == [LINE, OVERLAP, ARC, OVERLAP, ARC, OVERLAP, LINE]
+    before, after = np.zeros(3), np.zeros(3)
+    for k in range(6):
+        assert np.array_equal(state.seg.end[k], state.seg.start[k + 1])
+        segment_tangent(state.seg, k, 1.0, before)
+        segment_tangent(state.seg, k + 1, 0.0, after)
+        assert after == pytest.approx(before, abs=2e-4), k
+
+
+@pytest.mark.parametrize("tolerance", [0.003, 0.05, 0.4])
+def test_the_corner_is_missed_by_no_more_than_the_tolerance(tolerance: float) -> None:
+    state = queued(tolerance)
+    corners = np.array([[0.0, 0.0, -7.0], [8.0, 0.0, -4.6], [8.0, 6.0, -4.6]])
+    point = np.zeros(3)
+    pieces = [k for k, kind in enumerate(kinds(state)) if kind == OVERLAP]
+    for k, corner in zip(pieces, corners, strict=True):
+        away = []
+        for step in range(101):
+            segment_point(state.seg, k, state.seg.row[k]["length"] * step / 100.0, point)
+            away.append(float(np.linalg.norm(point - corner)))
+        assert min(away) <= tolerance
+        assert min(away) > 1e-4
+
+
+@pytest.mark.parametrize("tolerance", [0.05, math.inf])
+def test_every_axis_keeps_its_limits_where_motions_overlap(tolerance: float) -> None:
+    state = queued(tolerance)
+    prepare(state)
+    start_path(state.paths, 0)
+    run_recorded(state)
+    assert state.paths.position[0] == pytest.approx([15.0, 6.0, -3.0])
+    assert max(overload(state)) <= 1.0 + 1e-6
+
+
+def test_motions_overlap_by_the_rule_of_shares_alone() -> None:
+    assert OVERLAP not in kinds(queued(0.05, by_share=False))
+    assert OVERLAP not in kinds(queued(0.0))
+    assert queued(0.05).paths.row[0]["corner_rule"] == BY_SHARE
+
+
+def trochoid(*, lifted: bool) -> str:
+    """Return half circles of 4 mm that cut, each with a way back over the workpiece."""
+    found = ["F3900", "G1 X4"]
+    for turn in range(12):
+        x = 1.1 * turn
+        found.append(f"G2 X{x - 4.0:.4f} Y0 I-4 J0")
+        if lifted:
+            found += [f"G2 X{x + 5.1:.4f} Y0 I4.55 J0 Z0.5", "G1 Z0"]
+        else:
+            found += ["G0 Z1", f"G1 X{x + 5.1:.4f} Y0", "G1 Z0"]
+    return "\n".join(found)
+
+
+def arches() -> str:
+    """Return half circles in XZ that lines along Y join."""
+    found = ["F3000"]
+    for y in range(8):
+        found += ["G18 G2 X10 Z0 I5 K0", f"G1 Y{y + 0.5}", "G3 X0 Z0 I-5 K0", f"G1 Y{y + 1}"]
+    return "\n".join(found)
+
+
+# Servo cycles of 1 ms in which LinuxCNC 2.9 moved, with the same axes.
+THERE = [
+    pytest.param(trochoid(lifted=True), "G64 P0.01", 13.419, id="helices back"),
+    pytest.param(trochoid(lifted=True), "G64 P0.05 Q0.02", 12.488, id="helices back, wide"),
+    pytest.param(trochoid(lifted=True), "G64", 10.839, id="helices back, free"),
+    pytest.param(trochoid(lifted=False), "G64 P0.01", 11.281, id="lines down"),
+    pytest.param(trochoid(lifted=False), "G64 P0.1", 10.728, id="lines down, wide"),
+    pytest.param(arches(), "G64 P0.05 Q0.02", 12.000, id="arches"),
+]
+
+
+@pytest.mark.parametrize(("program", "rule", "seconds"), THERE)
+def test_the_time_is_that_of_linuxcnc(program: str, rule: str, seconds: float) -> None:
+    text = f"G21 G90 {rule}\nG0 X0 Y0 Z0\n{program}\nM2\n"
+    assert polycnc.run(text, ROUTER, dialect="linuxcnc").time_s == pytest.approx(seconds, rel=0.006)
