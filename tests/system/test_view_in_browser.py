@@ -206,7 +206,7 @@ def test_five_axes_as_the_part_sees_them(chromium: Any, tmp_path: Path) -> None:
 def test_a_distance_is_measured_between_two_places(chromium: Any, tmp_path: Path) -> None:
     """Clicks near ends of pieces are drawn to them."""
     program = tmp_path / "two.nc"
-    program.write_text("G21 G90 G94\nG0 X3 Y4 Z1\nG1 X3 Y24 F900\nG1 X43 Y24\nM30\n")
+    program.write_text("G21 G90 G94\nG0 X3 Y4 Z1\nG1 X3 Y24 F900\nG1 X43 Y24\nG4 X0.1\nG2 X51 Y16 J-8\nM30\n")
     view = Opened(chromium, tmp_path, str(program), "mill3")
     view.page.keyboard.press("m")
     assert view.page.locator("#measure").get_attribute("aria-pressed") == "true"
@@ -214,6 +214,10 @@ def test_a_distance_is_measured_between_two_places(chromium: Any, tmp_path: Path
         view.page.mouse.click(*view.page.evaluate(ON_STAGE, place))
     found = view.page.locator("#status").inner_text()
     assert found == "Distance 44.721 mm (X 40.000, Y 20.000, Z 0.000)"
+    for place in ((3.0, 5.0, 1.0), (43.2, 15.9, 1.0)):  # no line is at the middle of the arc
+        view.page.mouse.click(*view.page.evaluate(ON_STAGE, place))
+    words = view.page.locator("#status").inner_text().split()
+    assert float(words[1]) == pytest.approx(float(np.hypot(40.0, 12.0)), abs=0.03)
     view.close()
 
 

@@ -88,3 +88,13 @@ def test_the_first_line_that_is_too_long_is_found(newline: str, before: int) -> 
     offset = text.line_longer_than(11)
     assert offset is not None
     assert text.content[offset : offset + 12] == b"y" * 12
+
+
+def test_a_file_that_is_not_there_is_told_with_the_nearest_and_a_folder_with_batch(tmp_path: Path) -> None:
+    (tmp_path / "bracket.nc").touch()
+    with pytest.raises(UsageError, match=r"no such file[^\n]*\n[^\n]*Did you mean [^\n]*bracket\.nc\?"):
+        ProgramText.from_path(tmp_path / "braket.nc")
+    with pytest.raises(UsageError, match=r"Check the name and the folder"):
+        ProgramText.from_path(tmp_path / "O0700.mpf")
+    with pytest.raises(UsageError, match=r"it is a folder\n[^\n]*polycnc batch "):
+        ProgramText.from_path(tmp_path)

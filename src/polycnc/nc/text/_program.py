@@ -7,7 +7,9 @@ error or a message is printed.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from difflib import get_close_matches
 from functools import cached_property
+from itertools import islice
 from pathlib import Path
 from typing import Any
 
@@ -21,6 +23,7 @@ _UTF16_MARKS = (b"\xff\xfe", b"\xfe\xff")
 _NEWLINE = ord("\n")
 _RETURN = ord("\r")
 _PIECE_BYTES = 1 << 20
+_MOST_NAMES = 2_000  # of a folder that are compared with one that is not there
 
 
 MOST_LINE = 1 << 18  # bytes
@@ -66,7 +69,11 @@ class ProgramText:
         try:
             content = Path(path).read_bytes()
         except FileNotFoundError:
-            raise UsageError(f"no such file: {path}", hint="Check the name and the folder.") from None
+            raise UsageError(f"no such file: {path}", hint=_nearest(Path(path))) from None
+        except IsADirectoryError:
+            raise UsageError(
+                f"cannot read {path}: it is a folder", hint=f"polycnc batch {path} runs the programs in it."
+            ) from None
         except (OSError, ValueError) as error:  # ValueError: no file can have this name
             why = error.strerror if isinstance(error, OSError) else error
             raise UsageError(f"cannot read {path}: {why}", hint="Give a readable file.") from None
@@ -180,3 +187,13 @@ def _decoded(line: bytes) -> str:
         return line.decode("utf-8")
     except UnicodeDecodeError:
         return line.decode("latin-1")
+
+
+def _nearest(path: Path) -> str:
+    """Return what to do about a file that is not there: the name beside it that comes nearest, if any is near."""
+    try:
+        names = [each.name for each in islice(path.parent.iterdir(), _MOST_NAMES)]
+    except OSError:
+        return "Check the name and the folder."
+    found = get_close_matches(path.name, sorted(names), n=1, cutoff=0.75)
+    return f"Did you mean {path.with_name(found[0])}?" if found else "Check the name and the folder."

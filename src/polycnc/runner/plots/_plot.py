@@ -17,6 +17,7 @@ from polycnc.runner.plots._paths import draw_legend, draw_perspective, draw_plan
 from polycnc.runner.plots._scene import Scene, scene
 from polycnc.runner.plots._solid import draw_solid
 from polycnc.runner.view._track import Track, TrackCollector
+from polycnc.stock import Stock
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -109,10 +110,11 @@ def _figure(result: RunOutcome, axes: tuple[tuple[str, str], ...], track: Track)
         draw_plan(figure.add_subplot(grid[0, 0] if dimensions == 3 else grid[0, :]), shown)
         if dimensions == 3:
             axes_3d = figure.add_subplot(grid[0, 1], projection="3d")
-            if result.machined is None:
-                draw_perspective(axes_3d, shown)
+            machined = result.machined
+            if machined is not None and isinstance(machined.stock, Stock):
+                draw_solid(axes_3d, machined.stock, machined.zero_mm)
             else:
-                draw_solid(axes_3d, result.machined)
+                draw_perspective(axes_3d, shown)
         draw_legend(figure, shown, result.operations)
     row = int(dimensions > 1)
     speed = figure.add_subplot(grid[row, :])

@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 if TYPE_CHECKING:
-    from polycnc.runner._machining import Machined
+    from polycnc.stock import Stock
 
 Floats = npt.NDArray[np.float64]
 
@@ -18,15 +18,15 @@ _LAMP = np.array((-0.45, -0.6, 1.0)) / np.linalg.norm((-0.45, -0.6, 1.0))
 _AMBIENT = 0.45
 
 
-def draw_solid(axes: Any, machined: Machined) -> None:
-    """Draw what is left of the body in three dimensions, in machine coordinates; what was cut has a colour."""
+def draw_solid(axes: Any, stock: Stock, zero: tuple[float, float, float]) -> None:
+    """Draw what is left of a body, `zero` (mm) in machine coordinates is its own; what was cut has a colour."""
     from matplotlib.ticker import MaxNLocator
 
-    grid, zero = machined.stock.grid, machined.zero_mm
+    grid = stock.grid
     several = max(1, -(-max(grid.z.shape) // _MOST_ACROSS))
     heights = grid.z[::several, ::several]
     x, y = (grid.x[::several] + zero[0], grid.y[::several] + zero[1])
-    top, bottom = float(machined.stock.box.high[2]), grid.bottom
+    top, bottom = float(stock.box.high[2]), grid.bottom
     x = np.concatenate((x[:1], x, x[-1:]))  # upright sides
     y = np.concatenate((y[:1], y, y[-1:]))
     z = np.pad(np.pad(heights, 0, mode="edge"), 1, constant_values=bottom)
@@ -37,8 +37,8 @@ def draw_solid(axes: Any, machined: Machined) -> None:
         facecolors=_shaded(mesh_x, mesh_y, z, top), rcount=len(y), ccount=len(x), shade=False, linewidth=0.0,
         antialiased=False,
     )  # fmt: skip
-    low = np.array(machined.stock.box.low) + zero
-    high = np.array(machined.stock.box.high) + zero
+    low = np.array(stock.box.low) + zero
+    high = np.array(stock.box.high) + zero
     sides = high - low
     for name, label, first, last in zip("xyz", "XYZ", low, high, strict=True):
         getattr(axes, f"set_{name}label")(f"{label} [mm]", labelpad=12)

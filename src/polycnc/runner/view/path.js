@@ -134,6 +134,21 @@ export class Path {
     return { t: t_s[k - 1] + share * (t_s[k] - t_s[k - 1]), place, k, share };
   }
 
+  // The middle of the circle that an execution of a block goes along, null where it goes along none.
+  centreOf(execution) {
+    const { record } = this;
+    if (record.about.kinds[record.block_kind[record.number[execution]]] !== "arc") return null;
+    const from = record.start_s[execution], span = record.endOf(execution) - from;
+    const [a, b, c, d] = [0.2, 0.5, 0.8, 0.35].map((share) => new Vector3(...this.place(record.at(from + share * span).tip)));
+    const u = b.clone().sub(a), v = c.clone().sub(a), across = u.clone().cross(v), size = 2 * across.lengthSq();
+    if (size < 1e-12) return null;
+    const to = across.clone().cross(u).multiplyScalar(v.lengthSq()).add(v.clone().cross(across).multiplyScalar(u.lengthSq())).divideScalar(size);
+    const centre = a.clone().add(to);
+    return Math.abs(centre.distanceTo(d) - to.length()) < 0.03 ? centre.toArray() : null; // no helix
+  }
+
+  centres() { return this.middles ??= Array.from({ length: this.record.executions }, (_, execution) => this.centreOf(execution)).filter(Boolean); }
+
   // The points of an execution of a block, its ends included.
   pointsOf(execution) {
     const { record } = this, from = record.start_s[execution], to = record.endOf(execution);

@@ -233,15 +233,36 @@ export async function start(buffers) {
     if (now >= record.end_s) play(false); else requestAnimationFrame(tick);
   }
 
-  // ---------------------------------------------------------------- measuring: ends and middles of blocks attract
+  // ---------------------------------------------------------------- measuring: ends and middles of blocks and centres of arcs attract
   let measured = null;
-  function snapped(hit, x, y) {
-    const execution = record.blockAt[hit.k], [from, to] = [record.start_s[execution], record.endOf(execution)].map((t) => path.place(record.at(t).tip));
-    const straight = about.kinds[record.block_kind[record.number[execution]]] === "line";
-    const wanted = [from, to, ...(straight ? [from.map((v, i) => (v + to[i]) / 2)] : [])];
+  function snapped(hit, x, y) { // `hit` on the path or on the body, null beside both
+    const wanted = [...path.centres()];
+    if (hit?.k !== undefined) {
+      const execution = record.blockAt[hit.k], [from, to] = [record.start_s[execution], record.endOf(execution)].map((t) => path.place(record.at(t).tip));
+      const straight = about.kinds[record.block_kind[record.number[execution]]] === "line";
+      wanted.unshift(from, to, ...(straight ? [from.map((v, i) => (v + to[i]) / 2)] : []));
+    }
     const far = wanted.map((at) => { const seen = stage.project(new Vector3(...at).applyMatrix4(part.matrix)); return Math.hypot(seen.x - x, seen.y - y); });
-    const best = far.indexOf(Math.min(...far));
-    return far[best] < 18 ? wanted[best] : hit.place;
+    const least = far.reduce((low, each) => Math.min(low, each), Infinity);
+    return least < 18 ? wanted[far.indexOf(least)] : hit?.place ?? null;
+  }
+  function onBody(x, y) { // what of the body is at a pixel
+    if (!body?.mesh.visible) return null;
+    const back = part.matrix.clone().invert(), ends = [-1, 1].map((depth) => new Vector3(2 * x / stage.width - 1, 1 - 2 * y / stage.height, depth).unproject(stage.camera).applyMatrix4(back).toArray());
+    return body.pick(...ends);
+  }
+  let pointed = null; // the cut of the block under the pointer lights up
+  function point(x, y) {
+    const found = onBody(x, y), execution = found && found.t !== null ? record.executionAt(found.t) : null;
+    if (execution === pointed) return;
+    pointed = execution;
+    const of = execution ?? record.executionAt(now), row = record.rowOf(of);
+    body.light(record.start_s[of], record.endOf(of));
+    element("tip").hidden = execution === null || row < 0;
+    if (execution !== null && row >= 0) element("tip").textContent = `${record.line[row]}  ${about.text[row]}`.slice(0, 60);
+    element("tip").style.setProperty("left", `${Math.min(x + 14, stage.width - 180)}px`);
+    element("tip").style.setProperty("top", `${y + 14}px`);
+    stage.draw();
   }
   function measure(at) {
     measured.push(at);
@@ -256,7 +277,7 @@ export async function start(buffers) {
   function toggleMeasure() {
     measured = measured ? null : [];
     element("measure").setAttribute("aria-pressed", String(Boolean(measured)));
-    say(measured ? "Click two places on the path." : "");
+    say(measured ? "Click two places: ends, middles and centres of arcs attract." : "");
     if (!measured) { replace("ruler", null); stage.draw(); }
   }
   let pressed = null;
@@ -264,9 +285,13 @@ export async function start(buffers) {
   stage.canvas.addEventListener("pointerup", (event) => {
     if (!pressed || Math.hypot(event.clientX - pressed[0], event.clientY - pressed[1]) > 5) return;
     const box = stage.canvas.getBoundingClientRect(), [x, y] = [event.clientX - box.left, event.clientY - box.top];
-    const hit = path.pick(stage, x, y, part.matrix);
-    if (!hit) return;
-    if (measured) measure(snapped(hit, x, y)); else goTo(hit.t);
+    const hit = path.pick(stage, x, y, part.matrix) ?? onBody(x, y);
+    if (measured) { const at = snapped(hit, x, y); if (at) measure(at); } else if (hit && hit.t !== null) goTo(hit.t);
+  });
+  if (body) stage.canvas.addEventListener("pointermove", (event) => {
+    if (event.buttons || playing || !record.executions) return;
+    const box = stage.canvas.getBoundingClientRect();
+    point(event.clientX - box.left, event.clientY - box.top);
   });
 
   // ---------------------------------------------------------------- what is around it

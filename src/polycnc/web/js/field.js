@@ -136,6 +136,33 @@ export class Field {
     this.colourTexture.needsUpdate = true;
   }
 
+  // The place of the surface on a line of sight from `from` to `to` (in the body's own frame), and the time of the cut
+  // that made it: {place, t}, t null where nothing was cut; null where the line misses what is shown.
+  pick(from, to) {
+    const { x: cell } = this.mesh.scale, { x, y, z } = this.mesh.position, [nx, ny] = this.size, { section } = this.uniforms;
+    const at = [x, y, z].map((zero, i) => (from[i] - zero) / (i < 2 ? cell : 1)), way = at.map((v, i) => (to[i] - [x, y, z][i]) / (i < 2 ? cell : 1) - v);
+    const span = [[-0.5, nx - 0.5], [-0.5, ny - 0.5], [0, this.box[2][1] - z]];
+    let [first, last] = [0, 1];
+    for (let i = 0; i < 3; i++) {
+      const [a, b] = span[i].map((bound) => (bound - at[i]) / (way[i] || 1e-12)).sort((p, q) => p - q);
+      first = Math.max(first, a); last = Math.min(last, b);
+    }
+    if (first > last) return null;
+    const steps = Math.ceil((last - first) * Math.max(2 * Math.hypot(way[0], way[1]), 1)) + 1, mm = [x, y, z];
+    for (let n = 0; n <= steps; n++) {
+      const share = first + (last - first) * n / steps, p = at.map((v, i) => v + share * way[i]);
+      const i = Math.min(Math.max(Math.round(p[0]), 0), nx - 1), j = Math.min(Math.max(Math.round(p[1]), 0), ny - 1), k = 2 * (j * nx + i);
+      if (this.shown[k] < 1e-3 || p[2] > this.shown[k] + 1e-6) continue;
+      const place = p.map((v, axis) => mm[axis] + v * (axis < 2 ? cell : 1));
+      const { value: out } = section;
+      if (out.x * place[0] + out.y * place[1] + out.z * place[2] > out.w) continue;
+      if (n === steps || way[2] < 0) place[2] = Math.min(place[2], z + this.shown[k]);
+      const stamp = this.shown[k + 1];
+      return { place, t: stamp ? this.ends[stamp - 1] : null };
+    }
+    return null;
+  }
+
   light(from, to) { this.uniforms.lit.value.set(after(this.ends, from + 1e-6), after(this.ends, to + 1e-6)); }
 
   // The bottom is seen from below only.
