@@ -134,7 +134,8 @@ def test_values_of_a_bosch_control_can_be_read(tmp_path: Path) -> None:
 @pytest.mark.parametrize("kind", ["apci", "imc"])
 def test_a_board_says_that_it_has_none(kind: str) -> None:
     async def ask(client: Any, machine: ServedMachine) -> None:
-        for part in ("parameters", "variables", "tools", "offsets", "programs", "path", "inventory"):
+        own = [] if kind == "imc" else ["parameters"]  # the memory of a card
+        for part in (*own, "variables", "signals", "tools", "offsets", "programs", "path", "inventory"):
             refused(await client.get(f"/{part}"), 404)
         assert (await client.get("/status")).status_code == 200
         assert (await client.post("/clock", json={"step": 17})).json()["cycles"] == 17

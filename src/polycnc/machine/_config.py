@@ -348,10 +348,14 @@ class MachineConfig(StrictModel):
 
     def _repr_html_(self) -> str:
         """Return the axes as a table, for notebooks."""
-        from polycnc.machine._describe import AXIS_COLUMNS, axis_rows
         from polycnc.web import html_table
 
-        return html_table(f"{self.name}: {self.description}".rstrip(": "), AXIS_COLUMNS, axis_rows(self))
+        rows = [
+            (axis.name, axis.kind, f"{axis.vmax:g} {axis.unit}/s", f"{axis.amax:g} {axis.unit}/s²")
+            for axis in self.axes
+        ]
+        caption = f"{self.name}: {self.description}".rstrip(": ")
+        return html_table(caption, ("axis", "kind", "vmax", "amax"), rows)
 
     @property
     def axis_names(self) -> tuple[str, ...]:
