@@ -77,6 +77,12 @@ what went `in`, the `room` for what is written (null: a null pointer), the `code
 structures hexadecimal bytes. `polycnc calls KIND --replay FILE` carries the calls out on a new machine, at the same machine times, and
 lists those that answer otherwise; status 1 if there are any.
 
+## Values that TSRP has no place for
+
+`rdaux`, `wraux`, `rdlp`, `wrlp`, `rdlpndx`, `wrlpndx`, `rddv`, `rdsdec` and `wrsdec` use values that the record of the manual has no
+place for. With a record of the manual they do nothing. A program that wants them passes the first part of a `TSRPX`, which
+`MCUG3_EXTEND(&record)` has marked in its scratch words: then `aux`, `lp`, `dv` and `sdec` of that are read and written.
+
 ## What a program needs
 
 `polycnc clib KIND --missing PROGRAM` reads the import tables of an .exe or a DLL (32 and 64 bits, delayed imports too), or

@@ -7,6 +7,7 @@ its name in one step. What killed processes have left of such files is swept by 
 
 from __future__ import annotations
 
+import errno
 import os
 import re
 import secrets
@@ -34,6 +35,7 @@ else:
 
 RENAMES_OPEN_FILES = os.name != "nt"
 _TOKEN_BYTES = 8
+_FULL = (errno.ENOSPC, errno.EFBIG, errno.EIO, getattr(errno, "EDQUOT", errno.ENOSPC))
 _ATTEMPTS = 16
 _BESIDE = r"\.before|-journal|-wal|-shm"  # what writers make beside the file that they write
 _NO_LINK = getattr(os, "O_NOFOLLOW", 0)
@@ -129,6 +131,17 @@ def keep_apart(outputs: Iterable[tuple[str, str | Path | None]]) -> None:
 
 
 @contextmanager
+def _told(path: Path) -> Iterator[None]:
+    """Name the file in what the system says of a full disk: it names none where bytes are written."""
+    try:
+        yield
+    except OSError as error:
+        if error.filename is not None or error.errno not in _FULL:
+            raise
+        raise OSError(error.errno, error.strerror, str(path)) from error
+
+
+@contextmanager
 def complete_or_absent(path: Path, *, durable: bool = False, rewritten: bool = False) -> Iterator[Path]:
     """Yield a name to write to; the file gets its real name when the body ends well, else it is removed.
 
@@ -146,7 +159,8 @@ def complete_or_absent(path: Path, *, durable: bool = False, rewritten: bool = F
         if rewritten:
             yield from _copied(path)
         else:
-            yield path
+            with _told(path):
+                yield path
         return
     if not target.name or target.is_dir():
         raise UsageError(f"{path} is a folder", hint="Give the name of a file.")
@@ -167,9 +181,10 @@ def complete_or_absent(path: Path, *, durable: bool = False, rewritten: bool = F
             raise UsageError(
                 f"{path} cannot be written: {error.strerror}", hint="Check the folder and its access rights."
             ) from error
-        yield partial
-        if durable:
-            _synchronize(partial)
+        with _told(path):
+            yield partial
+            if durable:
+                _synchronize(partial)
         with suppress(OSError):
             os.chmod(partial, stat.S_IMODE(target.stat().st_mode))
         if not RENAMES_OPEN_FILES:

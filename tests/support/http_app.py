@@ -29,7 +29,8 @@ def served_machine(kind: str, machinery: Machinery) -> ServedMachine:
     keeper = Keeper(served, Still())
     machine = ServedMachine(
         "m", kind, made.device, served, keeper, made.find_control, made.own, end=made.end,
-        parameters=made.parameters, variables=made.variables,
+        parameters=made.parameters, variables=made.variables, signals=made.signals,
+        screen=made.screen, tasks=made.tasks,
     )  # fmt: skip
     keeper.start()
     return machine

@@ -17,7 +17,7 @@ from polycnc.controllers.imc.clib import IMCNET
 from polycnc.controllers.library.clib import Call, Slot
 from polycnc.servers.process import Machinery
 from support.c_hold import Hold
-from support.c_library import Door, at_door, built, loaded
+from support.c_library import Door, Guarded, at_door, built, loaded
 
 SYSTEM = Path(__file__).parents[2] / "examples" / "apci_system.dat"
 AXES = 3
@@ -148,7 +148,9 @@ def _apci(monkeypatch: pytest.MonkeyPatch, folder: Path, seed: int) -> tuple[Hol
     return hold, door, twin
 
 
-FILES = {"InitMcuSystem2", "InitMcuSystem3", "txbf", "txbf2", "rdcbcnct", "wrcbcnct", "getEnvStr"}
+BESIDE = set(MCUG3.extensions)
+"""What needs an extended record, and does nothing with one of the manual."""
+FILES = BESIDE | {"InitMcuSystem2", "InitMcuSystem3", "txbf", "txbf2", "rdcbcnct", "wrcbcnct", "getEnvStr"}
 
 
 def _apci_hold(monkeypatch: pytest.MonkeyPatch, folder: Path, rounds: int, seed: int) -> Hold:
@@ -218,6 +220,44 @@ def test_common_buffers_go_through_the_pointer_in_a_structure(
         assert library.rdcbcnct(ctypes.byref(CBCNCT(2, 5, None))) == 4
         assert library.rdcbcnct(None) == 1
         assert bytes(into) == b"abcde" + b"\xee" * 4
+    finally:
+        door.close()
+
+
+def test_values_without_a_place_go_through_an_extended_record(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    assert len(BESIDE) == 9
+    hold, door, _ = _apci(monkeypatch, tmp_path, 8)
+    extended, library = MCUG3.classes["TSRPX"], hold.c
+    marks = (0x584E4350, 0x31505253, ctypes.sizeof(extended), ~ctypes.sizeof(extended))
+    try:
+        tsrp, mine = (pcap.TSRP * 18)(), pcap.tsrp_array()
+        assert library.InitMcuSystem(tsrp) == hold.python.InitMcuSystem(mine) == 0
+        for axis in range(AXES):
+            for name in sorted(
+                BESIDE, key=lambda each: (each[2:], each[0] == "r")
+            ):  # written before it is read
+                plain = pcap.TSRP(an=axis)
+                outer = extended(tsrp=plain, aux=2.5 + axis, lp=7.25, dv=3.5, sdec=80.0 + axis)
+                twin = pcap.TSRP.from_buffer_copy(bytes(plain))
+                twin.aux, twin.lp, twin.dv, twin.sdec = outer.aux, outer.lp, outer.dv, outer.sdec
+                unmarked = Guarded(ctypes.sizeof(plain), bytes(plain))
+                getattr(library, name)(ctypes.c_void_p(unmarked.address))
+                assert unmarked.content == bytes(plain), name
+                for k, mark in enumerate(marks):
+                    outer.tsrp.scratch[k] = mark
+                memory = Guarded(ctypes.sizeof(outer), bytes(outer))
+                getattr(library, name)(ctypes.c_void_p(memory.address))
+                getattr(hold.python, name)(twin)
+                after = extended.from_buffer_copy(memory.content)
+                shown = (after.aux, after.lp, after.dv, after.sdec)
+                assert shown == (twin.aux, twin.lp, twin.dv, twin.sdec), name
+                assert list(after.tsrp.scratch) == list(marks)
+                assert memory.front_is_whole
+            read = pcap.TSRP(an=axis)
+            hold.python.rdaux(read)
+            assert read.aux == 2.5 + axis  # so it has been written
     finally:
         door.close()
 

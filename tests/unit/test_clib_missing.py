@@ -88,13 +88,15 @@ def test_a_linux_program_tells_names_that_begin_as_those_of_the_library(tmp_path
 
 def test_the_command_says_what_is_missing_and_what_has_no_effect(tmp_path: Path) -> None:
     program = tmp_path / "OLD.EXE"
-    program.write_bytes(_pe(["rdtrvl", "wraux", "openport"], wide=False, library="mcug3.DLL"))
+    program.write_bytes(_pe(["rdtrvl", "wraux", "BootFile", "openport"], wide=False, library="mcug3.DLL"))
     done = CliRunner().invoke(app, ["clib", "apci", "--missing", str(program)])
     assert done.exit_code == 1
     assert done.stdout.splitlines() == [
-        "OLD.EXE takes 3 functions from mcug3, of which 1 are missing",
+        "OLD.EXE takes 4 functions from mcug3, of which 1 are missing",
         "openport",
-        "wraux has no effect: the record has no place for the value, so nothing is read or written",
+        "BootFile has no effect: a served board is booted: booting it anew would make another one than the one that "
+        "is served",
+        "wraux has no effect with the manual's record, which has no place for the value; TSRPX has one",
     ]
     program.write_bytes(_pe(["rdtrvl"], wide=True, library="MCUG3"))
     assert CliRunner().invoke(app, ["clib", "apci", "--missing", str(program)]).exit_code == 0

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import os
 import subprocess
 import sys
@@ -249,3 +250,19 @@ def test_where_open_files_cannot_be_renamed_the_file_is_closed_first(
         raise ZeroDivisionError
     assert len(closed) == 2
     assert [path.name for path in tmp_path.iterdir()] == ["part.txt"]
+
+
+def _fill(path: Path) -> None:
+    if path != Path("/dev/full"):
+        raise OSError(errno.ENOSPC, "No space left on device")
+    path.write_bytes(b"x" * 99)
+
+
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="needs the device of a full disk")
+@pytest.mark.parametrize("special", [True, False])
+def test_a_full_disk_is_told_with_the_file(special: bool, here: Path) -> None:
+    path = Path("/dev/full") if special else here / "page.html"
+    with pytest.raises(OSError, match="No space left") as caught, outputs.complete_or_absent(path) as partial:
+        _fill(partial)
+    assert caught.value.filename == str(path)
+    assert special or list(here.glob("*page*")) == []

@@ -322,8 +322,8 @@ def _tables(given: dict[str, Any]) -> str:
     return tables.replace("sequence_step = 10", f"sequence_step = {given.get('step', 10)}")
 
 
-NEAR = 0.00009
-FAR = 0.00011
+NEAR = 0.0000999
+FAR = 0.0001001
 HOLDS = {
     "equal": ("==", (False, True, True, True, False)),
     "not_equal": ("!=", (True, False, False, False, True)),

@@ -25,7 +25,13 @@ def clib_command(
     ] = None,
     source_only: Annotated[bool, typer.Option(help="Write header and source, and build nothing.")] = False,
     packing: Annotated[
-        int, typer.Option(help="To how many bytes the program packs structures; 0: as the manual has them.")
+        int,
+        typer.Option(
+            help="To how many bytes the program packs structures; 0: as the manual has them.",
+            metavar="N",
+            min=0,
+            max=8,
+        ),
     ] = 0,
     in_process: Annotated[
         bool, typer.Option(help="Have the machines in the program's own process (Linux, 64 bits).")
@@ -71,5 +77,10 @@ def _say_missing(program: Path, library: CLibrary) -> None:
     idle = [name for name in taken if name in library.left_out]
     for name in idle:
         say(f"{name} has no effect: {library.left_out[name]}")
+    for name in filter(library.extensions.__contains__, taken):
+        made = library.extensions[name].__name__
+        say(
+            f"{name} has no effect with the manual's record, which has no place for the value; {made} has one"
+        )
     if absent:
         sys.exit(PROGRAM)

@@ -108,7 +108,9 @@ Target = Annotated[
 ]
 Tolerance = Annotated[
     float | None,
-    typer.Option(help="How far the part may differ from the target (0.02 mm).", metavar="MM"),
+    typer.Option(
+        help="How far the part may differ from the target (0.02 mm).", metavar="MM", min=0.001, max=10.0
+    ),
 ]
 Resolution = Annotated[
     float | None,

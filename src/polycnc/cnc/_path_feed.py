@@ -252,7 +252,8 @@ class PathFeed:
             return None
         if row["state"] == READY and head != self._left:
             tag = self.blocks.tags(head, head + 1)[0]  # nothing lay before it when it came
-            if tag != row["tag"] and self.stopper.stops_before(tag):
+            begun = tag in (row["tag"], *self.blocks.tags(max(head - 1, 0), head))  # a function stood there
+            if not begun and self.stopper.stops_before(tag):
                 return head
         first = max(head, self._seen)
         begin = max(first - 1, head)

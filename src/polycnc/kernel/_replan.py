@@ -108,7 +108,7 @@ def _ready_count(seg: Segments, paths: Paths, g: int) -> int:
     """Return the count up to which segments will not change: a line that may yet be rounded off or grow waits."""
     path = paths.row[g]
     tail = int(path["tail"])
-    if path["limit"] < tail:
+    if path["limit"] <= tail:  # the path rests there, so nothing joins the last line nor rounds its end
         return int(path["limit"])
     if tail > path["prepared"] and path["tolerance_mm"] > 0.0 and path["closed"] == 0:
         row = seg.row[slot(paths, g, tail - 1)]

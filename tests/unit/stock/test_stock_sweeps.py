@@ -118,7 +118,7 @@ def test_a_record_may_be_cut_anywhere(name: str, places: list[tuple[float, float
     piece = rows(places)
     whole.add(piece)
     for part in (slice(None, at), slice(at, None)):
-        parts.add(Rows(*(getattr(piece, each)[part] for each in Rows.__dataclass_fields__)))
+        parts.add(piece.at(np.arange(len(piece.t_s))[part]))
     assert np.array_equal(whole.stock.heights, parts.stock.heights)
     assert whole.removed_mm3 == pytest.approx(parts.removed_mm3, rel=1e-12)
 

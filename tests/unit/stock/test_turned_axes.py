@@ -31,7 +31,7 @@ def record(
     n = len(places)
     whole = np.arange(n)
     return Rows(
-        whole + 1.0,
+        np.arange(1.0, n + 1.0),
         np.array(places),
         whole + 10,
         np.full(n, 4),
@@ -47,7 +47,7 @@ def drilled(degrees: float, cell: float, *, rapid: bool = False, tool: Tool = MI
     deep, high = np.array([0.7, -0.4, -6.1]), np.array([0.7, -0.4, -6.1]) + 25.0 * axis
     places = [tuple(each) for each in (high, deep, high)]
     found = TurnedCutting(Voxels(BOX, cell), {4: tool})
-    found.add(record(places, [tuple(axis)] * 3, [True, rapid, True]))  # type: ignore[arg-type]
+    found.add(record(places, [tuple(axis)] * 3, [True, rapid, True]))
     return found
 
 

@@ -2,18 +2,49 @@
 
 from __future__ import annotations
 
+import ctypes
+from typing import Any
+
 from polycnc.controllers.apci import pcap
 from polycnc.controllers.apci.board._codes import InitCode, Status, Success
 from polycnc.controllers.apci.board._declared import HEADER
 from polycnc.controllers.apci.library._session import UNKNOWN_ERROR
+from polycnc.controllers.library import Element, Table, lay_out
 from polycnc.controllers.library.clib import CLibrary
 
-_NO_PLACE = "the record has no place for the value, so nothing is read or written"
+_BESIDE = ("aux", "lp", "dv", "sdec")
+TSRPX: Any = lay_out(
+    "TSRPX",
+    False,
+    Table(
+        {"tsrp": Element("TSRP", pcap.TSRP, pcap.TSRP)}
+        | {name: Element("double", ctypes.c_double, float) for name in _BESIDE},
+        pack=pcap.TSRP._table_.pack,
+    ),
+)
+"""A TSRP with the values that functions use and it has no place for; see `MCUG3_EXTEND` of the header."""
 _WITHOUT_A_PLACE = ("rdaux", "wraux", "rdlp", "wrlp", "rdlpndx", "wrlpndx", "rddv", "rdsdec", "wrsdec")
 _SERVED = "a served board is booted: booting it anew would make another one than the one that is served"
 _ROUTINE = "the library calls no routine of the program"
 
+_DECLARATIONS = """\
+typedef void(PC_CALL *InterruptRoutine)(int lines);
+
+/* Marks a TSRPX: rdaux, rdlp, rddv, rdsdec and those like them then read and write its own elements, which TSRP does
+   not have. The marked record is passed as a TSRP. */
+#define MCUG3_EXTEND(x) \\
+    ((x)->tsrp.scratch[0] = 0x584E4350, (x)->tsrp.scratch[1] = 0x31505253, \\
+     (x)->tsrp.scratch[2] = (PC_LONG)sizeof(TSRPX), (x)->tsrp.scratch[3] = ~(PC_LONG)sizeof(TSRPX))
+"""
+
 _HELPERS = """\
+/* Whether a record is the first part of a marked TSRPX. */
+static int mcug3_is_extended(const TSRP *tsrp)
+{
+    return tsrp && tsrp->scratch[0] == 0x584E4350 && tsrp->scratch[1] == 0x31505253 &&
+           tsrp->scratch[2] == (PC_LONG)sizeof(TSRPX) && tsrp->scratch[3] == ~(PC_LONG)sizeof(TSRPX);
+}
+
 /* How many records there are for a selection: up to the highest axis in it. */
 static int64_t mcug3_records(const AS *as)
 {
@@ -45,7 +76,9 @@ MCUG3 = CLibrary(
     opens=frozenset(("InitMcuSystem", "InitMcuSystem2", "InitMcuSystem3")),
     in_bytes=False,
     basic=True,
-    declarations="typedef void(PC_CALL *InterruptRoutine)(int lines);\n",
+    declarations=_DECLARATIONS,
+    extensions=dict.fromkeys(_WITHOUT_A_PLACE, TSRPX),
+    is_extended="mcug3_is_extended({})",
     helpers=_HELPERS,
     extents={
         **{(name, "tsrp"): "mcug3_records(as) * (int64_t)sizeof(TSRP)" for name in ("ja", "jhi", "jr")},
@@ -54,7 +87,6 @@ MCUG3 = CLibrary(
     },
     failures={"rdSampleTime": Success.FAILED, "rdslsp": Success.FAILED},
     left_out={
-        **dict.fromkeys(_WITHOUT_A_PLACE, _NO_PLACE),
         "BootFile": _SERVED,
         "MCUG3_SetBoardIntRoutine": _ROUTINE,
         "MCUG3_ResetBoardIntRoutine": _ROUTINE,

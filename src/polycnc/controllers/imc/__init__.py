@@ -6,5 +6,6 @@
 from polycnc.controllers.imc.card._card import Card
 from polycnc.controllers.imc.card._config import CardConfig, load_card, parse_card
 from polycnc.controllers.imc.card._status import CardStatus
+from polycnc.controllers.imc.core._parameters import PARAMETERS, Parameter
 
-__all__ = ["Card", "CardConfig", "CardStatus", "load_card", "parse_card"]
+__all__ = ["PARAMETERS", "Card", "CardConfig", "CardStatus", "Parameter", "load_card", "parse_card"]

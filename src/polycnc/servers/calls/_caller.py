@@ -197,6 +197,8 @@ class Caller:
                 return lambda content: content.split(b"\0", 1)[0].decode("latin-1")
             case Way.MEMORY:
                 return self._from_packed(slot)
+            case Way.RECORD if slot.is_extended:
+                return lambda content: _inner(slot, content)
             case Way.RECORD if (cls := self._other(slot)) is not None:
                 return lambda content: copied(
                     slot.element.from_buffer_copy(content[: slot.width].ljust(slot.width, b"\0")),
@@ -222,6 +224,8 @@ class Caller:
                 return lambda value: str(value).encode("latin-1", "replace") + b"\0"
             case Way.RECORDS:
                 return lambda value: b"".join(bytes(each) for each in value)
+            case Way.RECORD if slot.is_extended:
+                return lambda value: bytes(_outer(slot, value))
             case Way.RECORD if self._other(slot) is not None:
                 return self._to_packed
         return bytes
@@ -287,6 +291,26 @@ def _quickly(
         return Done(name, code, outputs)
 
     return quick
+
+
+def _inner(slot: Slot, content: bytes) -> Any:
+    """Return the record in an extended one, what it has no place for beside it."""
+    outer = slot.element.from_buffer_copy(content[: slot.width].ljust(slot.width, b"\0"))
+    first, *others = slot.element._table_.elements
+    made = type(getattr(outer, first)).from_buffer_copy(bytes(getattr(outer, first)))
+    for name in others:
+        setattr(made, name, getattr(outer, name))
+    return made
+
+
+def _outer(slot: Slot, value: Any) -> Any:
+    """Return the extended record of a record and what is beside it."""
+    made = slot.element()
+    first, *others = slot.element._table_.elements
+    setattr(made, first, value)
+    for name in others:
+        setattr(made, name, getattr(value, name))
+    return made
 
 
 def _hold(values: dict[str, Any], given: Given) -> None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any
 
 from fastapi import APIRouter, Path, Query, Request, Response
 from pydantic import BaseModel, ConfigDict, Field
@@ -24,7 +24,6 @@ _AxisName = Annotated[str, Field(max_length=16)]
 _ToolNumber = Annotated[int, Path(ge=1, le=99_999_999)]
 _OffsetName = Annotated[str, Path(pattern=r"^[A-Z][A-Z0-9]{0,7}([.][A-Z0-9]{1,8})?$")]
 _ValueName = Annotated[str, Path(min_length=1, max_length=64)]
-Part = Literal["parameters", "variables"]
 
 
 class ValueAsked(BaseModel):
@@ -75,7 +74,7 @@ class DataRoutes:
 
     def __init__(self, found: Found, router: APIRouter) -> None:
         self._found = found
-        for part in ("parameters", "variables"):
+        for part in ("parameters", "variables", "signals"):
             read_all, read, write = self._of(part)
             at = f"{ONE}/{part}"
             router.get(at, summary=f"The {part}, or some of them.", response_model=list[ValueShown])(read_all)

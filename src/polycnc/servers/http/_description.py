@@ -10,7 +10,7 @@ from polycnc.servers.http._documents import schemas
 from polycnc.servers.http._found import PROBLEM_SCHEMA
 
 _ONE = "/api/machines/{machine}"
-_OF_A_NAME = ("programs", "parameters", "variables")
+_OF_A_NAME = ("programs", "parameters", "variables", "signals")
 
 
 def describe(app: FastAPI, machines: list[str]) -> None:

@@ -10,6 +10,7 @@ from starlette.responses import Response
 
 from polycnc.cnc import ControlError, Refusal
 from polycnc.errors import PolycncError
+from polycnc.machine import SnapshotError
 from polycnc.servers.commands import NUMBERS, NotMeantError
 from polycnc.servers.machines import MachineError
 
@@ -45,6 +46,9 @@ def of_error(error: PolycncError) -> Response:
         return problem(
             status, error.what, error.hint, number=NUMBERS[error.reason], reason=error.reason.value
         )
+    if isinstance(error, SnapshotError):
+        reason = Refusal.SNAPSHOT
+        return problem(409, error.what, error.hint, number=NUMBERS[reason], reason=reason.value)
     if isinstance(error, MachineError):
         return problem(503, error.what, error.hint)
     return problem(422, error.what, error.hint)

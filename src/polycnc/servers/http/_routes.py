@@ -17,6 +17,7 @@ from polycnc.servers.http._documents import as_json, status_json
 from polycnc.servers.http._found import JSON, ONE, REFUSALS, Found, answer, body
 from polycnc.servers.http._lease import KeyShown, LeaseRoutes, Leases, is_for_all
 from polycnc.servers.http._path import PathRoutes
+from polycnc.servers.http._screens import ScreenRoutes
 from polycnc.servers.http._snapshots import SnapshotRoutes
 from polycnc.servers.http._stream import Stream, rate_of
 from polycnc.servers.machines import Log, ServedMachine
@@ -28,10 +29,11 @@ _Name = Annotated[str, Path(min_length=1, max_length=64)]
 
 
 class MachineShown(BaseModel):
-    """A machine: its name in paths, and its kind of controller."""
+    """A machine: its name in paths, its kind of controller, and what it has of what only some machines have."""
 
     name: str
     kind: str
+    parts: list[str]
 
 
 class DoorShown(BaseModel):
@@ -88,12 +90,16 @@ class Api:
         SnapshotRoutes(found, router)
         PathRoutes(found, router)
         get(f"{ONE}/connections", summary="The doors, and who is connected.")(self.connections)
+        ScreenRoutes(found, router)
         LeaseRoutes(found, leases, router)
         router.websocket(f"{ONE}/stream")(self.stream)
 
     async def machines(self) -> list[MachineShown]:
         """Return names and kinds."""
-        return [MachineShown(name=each.name, kind=each.kind) for each in self._found.machines.values()]
+        return [
+            MachineShown(name=each.name, kind=each.kind, parts=each.parts)
+            for each in self._found.machines.values()
+        ]
 
     async def connections(self, machine: str) -> list[DoorShown]:
         """Return the doors to a machine with their clients, those that machines share with all of theirs."""

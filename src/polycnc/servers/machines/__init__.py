@@ -15,8 +15,10 @@ from polycnc.servers.machines._machine import (
 from polycnc.servers.machines._owner import HostOwner, Keeper, Kept, Owner
 from polycnc.servers.machines._programs import MemoryPrograms, Programs
 from polycnc.servers.machines._scenario import Nothing, Scenario, ServedDevice
+from polycnc.servers.machines._screens import Screen, ScreenShown, Tasks, TaskShown
 from polycnc.servers.machines._values import (
     NO_PARAMETERS,
+    NO_SIGNALS,
     NO_VARIABLES,
     NamedValue,
     ReadValues,
@@ -32,6 +34,7 @@ __all__ = [
     "IDLE_S",
     "LOOPBACK",
     "NO_PARAMETERS",
+    "NO_SIGNALS",
     "NO_VARIABLES",
     "Door",
     "DoorKind",
@@ -49,9 +52,13 @@ __all__ = [
     "Programs",
     "ReadValues",
     "Scenario",
+    "Screen",
+    "ScreenShown",
     "ServedDevice",
     "ServedMachine",
     "Single",
+    "TaskShown",
+    "Tasks",
     "Treatment",
     "Values",
     "Wanted",

@@ -13,7 +13,8 @@ from polycnc.machine import Device
 from polycnc.servers.machines._owner import Keeper
 from polycnc.servers.machines._programs import MemoryPrograms, Programs
 from polycnc.servers.machines._scenario import ServedDevice
-from polycnc.servers.machines._values import NO_PARAMETERS, NO_VARIABLES, Values
+from polycnc.servers.machines._screens import Screen, Tasks
+from polycnc.servers.machines._values import NO_PARAMETERS, NO_SIGNALS, NO_VARIABLES, Values
 
 R = TypeVar("R")
 
@@ -69,6 +70,9 @@ class ServedMachine:
     """Switches the device off and keeps its memory."""
     parameters: Values = NO_PARAMETERS
     variables: Values = NO_VARIABLES
+    signals: Values = NO_SIGNALS
+    screen: Screen | None = None
+    tasks: Tasks | None = None
     treat: Callable[[str], Treatment] = _as_usual
     """A door tells its name with every request, and does with it what is said."""
 
@@ -78,6 +82,19 @@ class ServedMachine:
     def __post_init__(self) -> None:
         if self.programs is None and self.find_control is not None:
             self.programs = MemoryPrograms(self.find_control)
+
+    @property
+    def parts(self) -> list[str]:
+        """What it has of what only some machines have."""
+        has = {
+            "control": self.find_control is not None,
+            "parameters": self.parameters is not NO_PARAMETERS,
+            "variables": self.variables is not NO_VARIABLES,
+            "signals": self.signals is not NO_SIGNALS,
+            "screen": self.screen is not None,
+            "tasks": self.tasks is not None,
+        }
+        return [name for name, there in has.items() if there]
 
     @property
     def control(self) -> Control | None:

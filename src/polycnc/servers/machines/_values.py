@@ -73,7 +73,7 @@ class NoValues:
         )
 
 
-NO_PARAMETERS, NO_VARIABLES = NoValues("parameters"), NoValues("variables")
+NO_PARAMETERS, NO_VARIABLES, NO_SIGNALS = map(NoValues, ("parameters", "variables", "signals"))
 
 
 @dataclass(frozen=True, slots=True)

@@ -10,6 +10,7 @@ from polycnc.controllers.bosch.ncs import Mode as BoschMode
 from polycnc.errors import UsageError
 from polycnc.nc import ProgramText
 from polycnc.servers.machines import ReadValues
+from polycnc.servers.process._bosch_screen import BoschScreen
 from polycnc.servers.process._made import Machinery, Made
 
 
@@ -58,4 +59,6 @@ def make_bosch(wanted: Machinery) -> Made:
 
     variables = ReadValues("variable", pnc.variables)
     parameters = ReadValues("parameter", pnc.system.all_parameters)
-    return Made(pnc, lambda: pnc.control, own, pnc.close, load, parameters, variables)
+    return Made(
+        pnc, lambda: pnc.control, own, pnc.close, load, parameters, variables, screen=BoschScreen(pnc)
+    )

@@ -10,6 +10,7 @@ from polycnc.controllers.fanuc import PowerMate, PowerMateMode
 from polycnc.errors import UsageError
 from polycnc.servers.focas import numbered
 from polycnc.servers.machines import MemoryPrograms
+from polycnc.servers.process._fanuc_signals import FanucSignals
 from polycnc.servers.process._fanuc_values import FanucParameters, FanucVariables, set_offset, set_tool
 from polycnc.servers.process._made import Machinery, Made
 
@@ -68,4 +69,4 @@ def make_fanuc(wanted: Machinery) -> Made:
         select_program(program=name, channel=0)
 
     parameters, variables = FanucParameters(mate), FanucVariables(mate)
-    return Made(mate, lambda: mate.control, own, mate.close, load, parameters, variables)
+    return Made(mate, lambda: mate.control, own, mate.close, load, parameters, variables, FanucSignals(mate))

@@ -39,14 +39,18 @@ def _bosch(wanted: Machinery) -> Made:
 
 def _apci(wanted: Machinery) -> Made:
     from polycnc.controllers.apci import Board, load_system_file
+    from polycnc.servers.process._apci_tasks import ApciTasks
 
-    return Made(Board(None if wanted.file is None else load_system_file(wanted.file)))
+    board = Board(None if wanted.file is None else load_system_file(wanted.file))
+    return Made(board, tasks=ApciTasks(board))
 
 
 def _imc(wanted: Machinery) -> Made:
     from polycnc.controllers.imc import Card, load_card
+    from polycnc.servers.process._imc_values import ImcParameters
 
-    return Made(Card(None if wanted.file is None else load_card(wanted.file)))
+    card = Card(None if wanted.file is None else load_card(wanted.file))
+    return Made(card, parameters=ImcParameters(card))
 
 
 KINDS: Mapping[str, Callable[[Machinery], Made]] = {

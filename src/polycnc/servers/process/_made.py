@@ -9,7 +9,7 @@ from typing import Any
 
 from polycnc.cnc import Control
 from polycnc.machine import Device
-from polycnc.servers.machines import NO_PARAMETERS, NO_VARIABLES, Values
+from polycnc.servers.machines import NO_PARAMETERS, NO_SIGNALS, NO_VARIABLES, Screen, Tasks, Values
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,3 +37,6 @@ class Made:
     load: Callable[[str, bytes], None] | None = None
     parameters: Values = NO_PARAMETERS
     variables: Values = NO_VARIABLES
+    signals: Values = NO_SIGNALS
+    screen: Screen | None = None
+    tasks: Tasks | None = None

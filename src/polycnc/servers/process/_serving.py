@@ -171,6 +171,9 @@ class Serving:
             made.end,
             made.parameters,
             made.variables,
+            made.signals,
+            made.screen,
+            made.tasks,
         )
         self.machines.append(machine)
         if wanted.story is not None:

@@ -11,7 +11,7 @@ from polycnc.controllers.apci.sap._faults import FAULTS
 from polycnc.controllers.apci.sap._host import BUFFER_BYTES, Call, Host
 from polycnc.controllers.apci.sap._lexer import KEYWORDS, NAME, SourceText, tokens
 from polycnc.controllers.apci.sap._program import TASKS, Program
-from polycnc.controllers.apci.sap._task import TaskStatus
+from polycnc.controllers.apci.sap._task import WAITING, Task, TaskStatus
 from polycnc.controllers.apci.sap._tasks import BUDGET, Tasks
 
 __all__ = [
@@ -24,11 +24,13 @@ __all__ = [
     "NAME",
     "SYSTEM_VARIABLES",
     "TASKS",
+    "WAITING",
     "Call",
     "CncFileError",
     "Host",
     "Program",
     "SourceText",
+    "Task",
     "TaskStatus",
     "Tasks",
     "check",

@@ -44,6 +44,16 @@ class Parameter:
         """Return how many bits of the number are fraction."""
         return int(self.type.partition(".")[2] or 0)
 
+    @property
+    def least(self) -> float:
+        """Return the lowest number that it can be written with; a set flag is -1 or 65535."""
+        return self.from_raw(0 if self.type.startswith("U") else -(1 << 16 * self.words - 1))
+
+    @property
+    def most(self) -> float:
+        """Return the highest number that it can be written with."""
+        return self.from_raw((1 << 16 * self.words - self.is_signed) - 1)
+
     def to_raw(self, value: float) -> int:
         """Return the integer that stands for `value`, the nearest that can be represented."""
         return round(value * (1 << self.fraction_bits))

@@ -60,6 +60,12 @@ class Slot:
         object.__setattr__(self, "width", ctypes.sizeof(self.element))
 
     @property
+    def is_extended(self) -> bool:
+        """Whether the structure is longer than that of the table, see `CLibrary.extensions`."""
+        ctype = getattr(self.argument.type, "ctype", None)
+        return self.way is Way.RECORD and ctype is not None and ctype.__name__ != self.element.__name__
+
+    @property
     def row(self) -> str:
         """Everything that both sides have to agree on, as a line."""
         ways = f"{'r' if self.reads else ''}{'w' if self.writes else ''}"
@@ -103,6 +109,9 @@ class CLibrary:
         extents: By function and argument: how many bytes lie behind a pointer, in C.
         aliases: Other names of functions.
         left_out: By function, why it does nothing.
+        extensions: By function, a structure that begins with the record of its argument and goes on with what that has
+            no place for; it is passed in the record's place.
+        is_extended: Whether it is, in C, of the argument; else the function does nothing.
         packing: To how many bytes the program packs structures, 0: each as the manual has it.
         packings: The packings that programs of this library have besides.
         selected: Which member of a union holds.
@@ -132,6 +141,8 @@ class CLibrary:
     extents: Mapping[tuple[str, str], str] = field(default_factory=dict)
     aliases: Mapping[str, str] = field(default_factory=dict)
     left_out: Mapping[str, str] = field(default_factory=dict)
+    extensions: Mapping[str, Any] = field(default_factory=dict)
+    is_extended: str = ""
     packing: int = 0
     packings: frozenset[int] = frozenset()
     selected: Selected = field(default_factory=dict)
@@ -149,7 +160,7 @@ class CLibrary:
     @cached_property
     def classes(self) -> Mapping[str, Any]:
         """The structures by name, as the program packs them."""
-        classes = self.header.classes
+        classes = self.header.classes | {each.__name__: each for each in self.extensions.values()}
         return (
             {name: repacked(cls, self.packing) for name, cls in classes.items()} if self.packing else classes
         )
@@ -206,6 +217,8 @@ def _slot(library: CLibrary, function: Function, argument: Argument) -> Slot:
     way, element = slot_of(library, argument)
     if way is Way.VALUE:
         return Slot(argument, way, element)
+    if function.name in library.extensions and way is Way.RECORD:
+        element = library.extensions[function.name]
     said = library.extents.get((function.name, argument.name))
     if said is None:
         said = _extent(library, function, argument, way, element)

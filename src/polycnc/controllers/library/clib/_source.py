@@ -82,6 +82,8 @@ def _function(library: CLibrary, call: Call) -> str:
     rows = [_row(slot, before, after) for slot in call.slots]
     given, count = ("given", len(rows)) if rows else ("0", 0)
     lines = [f"{prototype(library, function)}", "{", *before]
+    if function.name in library.extensions:  # they return nothing
+        lines.append(f"    if (!{library.is_extended.format(function.arguments[0].name)})\n        return;")
     if rows:
         lines += ["    pc_argument given[] = {", *(f"        {row}," for row in rows), "    };"]
     told = f"pc_call({call.number}, {_way_of(library, function)}, {given}, {count})"

@@ -78,7 +78,7 @@ function show(status) {
   if (pages) pages.status = status;
   const channel = status.channels?.[0];
   put($("clock"), `${status.time_s.toFixed(1)} s`);
-  if (!channel) return;
+  if (!channel) { showBoard(status); return; }
   put($("mode"), TEXTS.modes[status.mode] ?? status.mode);
   $("run").dataset.state = channel.run_state;
   put($("run"), channel.run_state.replaceAll("_", " "));
@@ -101,6 +101,16 @@ function show(status) {
   put($("stop"), pressed ? TEXTS.release : TEXTS.stop);
   for (const key of document.querySelectorAll("[data-jog]")) key.disabled = !["jog", "inc", "ref"].includes(status.mode) || (status.mode === "ref" && key.dataset.way === "-1");
   showLine(channel);
+}
+
+// A board or card has no control: its axes and bits as its status has them.
+function showBoard(status) {
+  const { axes, cycle, time_s, ...others } = status, columns = Object.keys(axes[0] ?? {});
+  const number = (value) => (typeof value === "number" && !Number.isInteger(value) ? value.toFixed(3) : String(value));
+  const rows = axes.map((axis, index) => make("tr", {}, make("th", { scope: "row" }, String(index)), ...columns.map((key) => make("td", {}, number(axis[key])))));
+  const bits = Object.entries(others).map(([name, value]) => make("tr", {}, make("th", { scope: "row" }, name), make("td", {}, number(value))));
+  document.querySelector("cnc-axes").replaceChildren(
+    make("table", {}, make("tr", {}, make("th", {}, TEXTS.axis), ...columns.map((key) => make("th", {}, key))), ...rows), make("table", { class: "bits" }, ...bits));
 }
 
 function showWords(status, channel) {
@@ -302,7 +312,7 @@ function build(axes) {
     const file = event.dataTransfer.files[0];
     if (file) { name.value = file.name.replace(/\.[^.]*$/, ""); text.value = await file.text(); }
   });
-  pages = new Pages($("store"), programs, { make, ask, command, say, lease });
+  pages = new Pages($("store"), programs, { make, ask, url, command, say, lease, parts_of_machine: state.parts });
   pages.status = state.status;
   $("path").setAttribute("aria-label", TEXTS.path);
   $("steps").replaceChildren(
@@ -323,7 +333,9 @@ async function begin() {
   const machines = await (await fetch("/api/machines")).json();
   $("machine").replaceChildren(...machines.map((each) => make("option", { value: each.name }, each.name)));
   state.machine = machines[0].name;
-  $("machine").onchange = (event) => { releaseAll(); state.machine = event.target.value; path.clear(); charts.clear(); open(); };
+  const choose = () => { state.parts = machines.find((each) => each.name === state.machine).parts; document.body.classList.toggle("board", !state.parts.includes("control")); };
+  choose();
+  $("machine").onchange = (event) => { releaseAll(); pages.close(); state.machine = event.target.value; choose(); path.clear(); charts.clear(); open(); };
   await open();
 }
 async function open() {

@@ -4,14 +4,20 @@ import { TEXTS } from "/texts.js";
 const TOOL = ["length_mm", "radius_mm", "wear_length_mm", "wear_radius_mm"];
 const OFFSETS = ["EXT", "G54", "G55", "G56", "G57", "G58", "G59"];
 const MOST_ROWS = 60, WATCH_MS = 500, MOST_SHOWN = 20;
+const PAGES = ["tools", "offsets", "parameters", "variables", "signals", "screen", "tasks", "alarms", "snapshots", "connections"];
+const NEEDS = { tools: "control", offsets: "control", alarms: "control", parameters: "parameters", variables: "variables", signals: "signals", screen: "screen", tasks: "tasks" };
+const KEYS_OF = { Enter: "ENTER", Delete: "DELETE", Backspace: "DELETE", ArrowUp: "CURSOR_UP", ArrowDown: "CURSOR_DOWN", ArrowLeft: "CURSOR_LEFT", ArrowRight: "CURSOR_RIGHT", Escape: "LEVEL_RETURN",
+  ...Object.fromEntries([1, 2, 3, 4, 5, 6, 7, 8].map((k) => [`F${k}`, `SOFTKEY${k}`])) };
+const USUAL_SIGNALS = "G8, G10, G11, G12, G14, G30, G43, G46, F0, F1, X4, X8, X9, Y8, R0, K0, D0";
 
 export class Pages {
   constructor(place, programs, tools) {
     Object.assign(this, tools);
     this.parts = {};
+    this.lists = {};
     this.status = null;
-    this.panels = { programs };
-    for (const name of ["tools", "offsets", "parameters", "variables", "alarms", "snapshots", "connections"]) {
+    this.panels = this.parts_of_machine.includes("control") ? { programs } : {};
+    for (const name of PAGES.filter((each) => !(each in NEEDS) || this.parts_of_machine.includes(NEEDS[each]))) {
       this.panels[name] = this.make("div", { id: `page-${name}`, role: "tabpanel", "aria-labelledby": `tab-${name}` });
     }
     this.tabs = Object.keys(this.panels).map((name) => this.make("button",
@@ -22,7 +28,7 @@ export class Pages {
       if (step && at >= 0) { event.stopPropagation(); this.tabs[(at + step + this.tabs.length) % this.tabs.length].focus(); }
     });
     place.replaceChildren(list, ...Object.values(this.panels));
-    this.open("programs");
+    this.open(Object.keys(this.panels)[0]);
   }
 
   open(name) {
@@ -31,9 +37,12 @@ export class Pages {
     for (const tab of this.tabs) tab.setAttribute("aria-selected", tab.id === `tab-${name}`);
     clearInterval(this.watching);
     this[`show_${name}`]?.();
-    const again = { variables: () => this.watch(), connections: () => this.count() }[name];
+    const again = { variables: () => this.watch(), signals: () => this.see(), screen: () => this.look(), tasks: () => this.turn(), connections: () => this.count() }[name];
     if (again) this.watching = setInterval(again, WATCH_MS);
   }
+
+  // Ask nothing any more: another machine is looked at.
+  close() { clearInterval(this.watching); }
 
   inventory(parts) {
     Object.assign(this.parts, parts);
@@ -124,21 +133,24 @@ export class Pages {
     return cell;
   }
 
-  show_variables() {
-    const names = this.make("input", { id: "watched", placeholder: TEXTS.watch, "aria-label": TEXTS.watch, value: localStorage.getItem("watched") ?? "" });
-    names.addEventListener("change", () => { localStorage.setItem("watched", names.value); this.watch(); });
-    this.watched = this.make("div", {});
-    this.panels.variables.replaceChildren(names, this.watched);
-    this.watch();
+  show_variables() { this.list("variables", "", () => this.watch()); }
+  watch() { return this.rows_of("variables", ""); }
+
+  // A list of values to watch, whose names the viewer gives; without any it is `usual`, or all.
+  list(part, usual, again) {
+    const names = this.make("input", { id: `watched-${part}`, class: "watched", placeholder: TEXTS.watch[part], "aria-label": TEXTS.watch[part], value: localStorage.getItem(`watched-${part}`) ?? usual });
+    names.addEventListener("change", () => { localStorage.setItem(`watched-${part}`, names.value); again(); });
+    this.lists[part] = this.make("div", {});
+    this.panels[part].replaceChildren(names, this.lists[part]);
+    again();
   }
 
-  async watch() {
-    if (this.panels.variables.querySelector(".cell:focus") || document.hidden) return;
-    const names = localStorage.getItem("watched") ?? "";
-    const answer = await this.ask(`variables?names=${encodeURIComponent(names)}`);
+  async rows_of(part, usual) {
+    if (this.panels[part].querySelector(".cell:focus") || document.hidden) return;
+    const answer = await this.ask(`${part}?names=${encodeURIComponent(localStorage.getItem(`watched-${part}`) ?? usual)}`);
     if (!answer) { clearInterval(this.watching); return; }
-    const rows = (await answer.json()).slice(0, MOST_ROWS).map((each) => this.row(each.name, this.values("variables", each), each.what));
-    this.watched.replaceChildren(this.table([TEXTS.number, TEXTS.value, TEXTS.meaning], rows));
+    const rows = (await answer.json()).slice(0, MOST_ROWS).map((each) => this.row(each.name, this.values(part, each), each.what));
+    this.lists[part].replaceChildren(this.table([TEXTS.number, TEXTS.value, TEXTS.meaning], rows));
   }
 
   // -------------------------------------------------------------- alarms and snapshots
@@ -148,6 +160,64 @@ export class Pages {
     const past = [...(this.parts.alarms ?? [])].reverse().map((alarm) => this.row(alarm.number < 0 ? "" : String(alarm.number), alarm.text, "", alarm.time ?? ""));
     this.panels.alarms.replaceChildren(this.table([TEXTS.number, TEXTS.text, TEXTS.to_do, TEXTS.time], [...now, ...past]),
       this.button("clear-alarms", TEXTS.forget_all, () => this.command("clear_alarm_history")));
+  }
+
+  // -------------------------------------------------------------- what only some machines have
+
+  show_signals() { this.list("signals", USUAL_SIGNALS, () => this.see()); }
+  see() { return this.rows_of("signals", USUAL_SIGNALS); }
+
+  show_screen() {
+    const press = async (key) => {
+      if (await this.ask("screen", { method: "POST", body: JSON.stringify({ key }) })) this.look();
+    };
+    this.shown_screen = this.make("img", { id: "screen", alt: TEXTS.pages.screen, tabindex: "0" });
+    this.shown_screen.addEventListener("keydown", (event) => {
+      const name = KEYS_OF[event.key] ?? (event.key.length === 1 ? event.key : null);
+      if (name && !event.altKey && !event.ctrlKey && !event.metaKey) { event.preventDefault(); event.stopPropagation(); press(name); }
+    });
+    this.screen_keys = this.make("p", { class: "row", id: "screen-keys" });
+    this.press_key = press;
+    this.panels.screen.replaceChildren(this.shown_screen, this.screen_keys, this.make("p", { class: "hint" }, TEXTS.screen_hint));
+    this.look();
+  }
+
+  async look() {
+    if (document.hidden) return;
+    const answer = await this.ask("screen");
+    if (!answer) { clearInterval(this.watching); return; }
+    const told = await answer.json(), text = JSON.stringify(told);
+    if (this.screen_keys.dataset.told === text && this.shown_screen.src) return;
+    this.screen_keys.dataset.told = text;
+    this.shown_screen.src = `${this.url("screen.svg")}?at=${performance.now()}`;
+    this.shown_screen.alt = told.lines.map((line) => line.trimEnd()).filter(Boolean).join("\n");
+    const names = told.keys.filter((key) => !key.startsWith("SOFTKEY"));
+    const soft = told.softkeys.map((label, k) => this.button(`key-SOFTKEY${k + 1}`, label.replaceAll("&", " ") || `F${k + 1}`, () => this.press_key(`SOFTKEY${k + 1}`)));
+    this.screen_keys.replaceChildren(...soft, ...names.map((key) => this.button(`key-${key}`, TEXTS.keys_of_screen[key] ?? key, () => this.press_key(key))));
+  }
+
+  show_tasks() {
+    this.source = this.make("textarea", { id: "source", "aria-label": TEXTS.source, spellcheck: "false", placeholder: TEXTS.source });
+    this.task = this.make("select", { id: "task", "aria-label": TEXTS.task }, ...[0, 1, 2, 3].map((number) => this.make("option", {}, String(number))));
+    this.shown_tasks = this.make("div", {});
+    const load = async () => {
+      if (await this.ask(`tasks/${this.task.value}`, { method: "PUT", body: this.source.value })) this.turn();
+    };
+    this.panels.tasks.replaceChildren(this.shown_tasks, this.make("p", { class: "row" }, this.task, this.button("load-task", TEXTS.load, load)), this.source);
+    this.turn();
+  }
+
+  async turn() {
+    if (document.hidden || this.shown_tasks.contains(document.activeElement)) return;
+    const answer = await this.ask("tasks");
+    if (!answer) { clearInterval(this.watching); return; }
+    const give = (number, what) => this.button(`${what}-${number}`, TEXTS.tasks_do[what], async (event) => {
+      event.target.blur();
+      if (await this.ask(`tasks/${number}`, { method: "POST", body: JSON.stringify({ do: what }) })) this.turn();
+    });
+    const rows = (await answer.json()).map((each) => this.row(String(each.task), each.state, each.line ? String(each.line) : "",
+      each.error_number ? `${each.error_number} ${each.error} (${TEXTS.line} ${each.error_line})` : "", give(each.task, "start"), give(each.task, "stop"), give(each.task, "continue")));
+    this.shown_tasks.replaceChildren(this.table([TEXTS.task, TEXTS.state, TEXTS.line, TEXTS.error_of, "", "", ""], rows));
   }
 
   // -------------------------------------------------------------- who is connected
