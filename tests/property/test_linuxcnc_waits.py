@@ -137,5 +137,5 @@ def test_single_blocks_come_to_the_same_end_and_stand_at_every_wait() -> None:
             stops.append(0 if record is None else record.line)
             rig.control.cycle_start()
     assert rig.state is RunState.COMPLETED
-    assert stops == [1, 2, 18, 22, 23, 18, 22, 23, 5, 5, 8, 8, 11, 12, 13, 14]
+    assert stops == [1, 2, 18, 22, 23, 18, 22, 23, 5, 8, 8, 11, 12, 13, 14]
     assert rig.place()[1:] == pytest.approx(END[1:])

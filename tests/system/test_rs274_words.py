@@ -42,8 +42,11 @@ def prepare(program: str) -> tuple[list[Step], ProgramError | None]:
     machine = Machine(CONFIG, segments=1 << 13)
     channel = Channel(ProgramText.from_text(program), DIALECT, machine, language=language_for(DIALECT))
     give_to_path(machine.state, channel.path)
-    while not channel.done:
+    channel.fill()
+    while channel.paused:
+        machine.clock.tick(1)  # more is prepared with the next cycle
         channel.fill()
+    assert channel.done
     return queued_steps(machine, channel), channel.error
 
 

@@ -32,7 +32,7 @@ def numbered(text: str) -> str:
     )
 
 
-GOLDEN = Path(__file__).resolve().parents[1] / "golden" / "cpl_values.txt"
+GOLDEN = Path(__file__).resolve().parents[1] / "golden" / "cpl" / "values.txt"
 
 
 def cases() -> Iterator[tuple[str, dict[str, Any]]]:

@@ -135,7 +135,7 @@ def table(program: str) -> dict[str, float]:
     channel = prepare(f"G10 {program}\n", config=LATHE, dialect="fanuc-lathe")
     assert channel.error is None, channel.error
     tool = channel.state.tables.tool(3)
-    return {name: getattr(tool, name) for name in type(tool).model_fields if name != "description"}
+    return {name: getattr(tool, name) for name in (*REST, *BEFORE)}
 
 
 BEFORE = {"radius_mm": 0.8, "tip": 3, "x_mm": 7.0, "z_mm": -2.5, "wear_x_mm": 0.125}
