@@ -47,7 +47,7 @@ def test_every_position_of_an_interrupted_run_lies_on_the_path(seed: int, config
     program = random_program(rng)
     path = fine_path(program, config)
     points, _, run = interrupted(program, config, rng)
-    # Between its points, at most 0.1 mm apart, `path` cuts corners where the run may stand.
-    assert farthest(points[::61], path) < 0.03
+    # A step ends in a corner itself, which rounding passes at 0.03 mm; `path` is a polyline of points 0.14 mm apart.
+    assert farthest(points[::61], path) < 0.0302
     assert overload(points, config) <= ROUNDING
     assert run.machine.setpoints == dict(zip("XYZ", path[-1].tolist(), strict=True))

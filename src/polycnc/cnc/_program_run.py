@@ -2,6 +2,7 @@
 
 Nothing here changes where the path leads. Holding, overrides and stops at block ends only change how fast it is
 followed, within every axis' limits, so a run that is interrupted ends where the undisturbed one does, to the last bit.
+Only a stop at the end of a block whose corner would be rounded is in the corner itself.
 """
 
 from __future__ import annotations
