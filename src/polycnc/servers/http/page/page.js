@@ -335,7 +335,7 @@ async function begin() {
   state.machine = machines[0].name;
   const choose = () => { state.parts = machines.find((each) => each.name === state.machine).parts; document.body.classList.toggle("board", !state.parts.includes("control")); };
   choose();
-  $("machine").onchange = (event) => { releaseAll(); pages.close(); state.machine = event.target.value; choose(); path.clear(); charts.clear(); open(); };
+  $("machine").onchange = (event) => { releaseAll(); pages.close(); clearTimeout(drawPath.timer); state.lines = ""; state.machine = event.target.value; choose(); path.clear(); charts.clear(); open(); };
   await open();
 }
 async function open() {
