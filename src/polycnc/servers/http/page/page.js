@@ -202,6 +202,7 @@ function connect() {
   const socket = new WebSocket(`${location.protocol === "https:" ? "wss" : "ws"}://${location.host}${url(`stream?rate=${RATE}`)}`);
   state.socket = socket;
   socket.onmessage = (event) => {
+    if (state.socket !== socket) return; // of the machine before
     const message = JSON.parse(event.data);
     if (message.refused) { say(`${message.refused.detail}. ${message.refused.hint}`); return; }
     state.seen = performance.now();
@@ -335,8 +336,16 @@ async function begin() {
   state.machine = machines[0].name;
   const choose = () => { state.parts = machines.find((each) => each.name === state.machine).parts; document.body.classList.toggle("board", !state.parts.includes("control")); };
   choose();
-  $("machine").onchange = (event) => { releaseAll(); pages.close(); clearTimeout(drawPath.timer); state.lines = ""; state.machine = event.target.value; choose(); path.clear(); charts.clear(); open(); };
+  $("machine").onchange = (event) => { releaseAll(); pages.close(); leave(); state.machine = event.target.value; choose(); path.clear(); charts.clear(); open(); };
   await open();
+}
+// Nothing of a machine may be asked of, or shown for, the one that is chosen after it.
+function leave() {
+  const { socket } = state;
+  state.socket = null;
+  socket?.close();
+  clearTimeout(drawPath.timer);
+  state.lines = "";
 }
 async function open() {
   const status = await (await fetch(url("status"))).json();
