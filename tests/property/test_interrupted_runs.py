@@ -40,8 +40,9 @@ def test_holds_overrides_and_steps_keep_limits_and_the_end(seed: int, config: Ma
         assert highest_jerk(speeds) <= config.path.jerk_mm_s3 * ROUNDING
 
 
-@pytest.mark.parametrize("seed", often(range(3), 1))
-@pytest.mark.parametrize("config", [SHARP, ROUND, SOFT], ids=["sharp", "round", "soft"])
+@pytest.mark.parametrize(
+    ("config", "seed"), often([(config, seed) for config in (ROUND, SHARP, SOFT) for seed in range(3)], 1)
+)
 def test_every_position_of_an_interrupted_run_lies_on_the_path(seed: int, config: MachineConfig) -> None:
     rng = np.random.default_rng([seed, 73])
     program = random_program(rng)

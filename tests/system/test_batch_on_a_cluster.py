@@ -81,6 +81,7 @@ def _reports(result: polycnc.BatchResult) -> list[dict[str, Any]]:
         return [report.as_dict() for report in result]
 
 
+@pytest.mark.long  # two schedulers and their workers are started
 def test_the_command_on_a_cluster(
     cluster: tuple[str, list[subprocess.Popen[bytes]]], folder: Path, tmp_path: Path
 ) -> None:

@@ -28,7 +28,7 @@ from polycnc.nc import ProgramText
 from polycnc.runner import run
 from support.programs import MILL
 
-FEW = 2
+FEW = 1
 
 # Each line on standard output is a number: what has the numbers up to it is acknowledged.
 STORE = """

@@ -14,7 +14,7 @@ from support.programs import LINEAR, channel_state, machine_config, prepare, que
 CONFIG = machine_config(LINEAR)
 NAMES = (
     *("arc-ijk", "arc-xz-plane", "arc-yz-plane", "circle", "circle-inch"),
-    *("helical-thread-milling", "jsdc", "tball-pocket"),
+    *("helical-thread-milling", "jsdc", pytest.param("tball-pocket", marks=pytest.mark.long)),
 )
 
 

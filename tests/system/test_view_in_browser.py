@@ -111,7 +111,7 @@ def test_slide_play_and_click(
 ) -> None:
     view = Opened(chromium, tmp_path, part, machine)
     end_s = float(view.trace.t_s[-1])
-    for share in (0.829, 0.437, 0.171):
+    for share in (0.829, 0.171):
         view.slide(share)
         assert view.time_s == pytest.approx(share * end_s, abs=0.02 * end_s)
         view.assert_agrees(drawn)
@@ -293,13 +293,13 @@ def test_the_slider_cuts_back_and_forth(chromium: Any, tmp_path: Path) -> None:
         "() => { const { body } = document.getElementById('stage').seen; return [body.step, ...body.shown]; }"
     )
     seen: dict[float, np.ndarray[Any, Any]] = {}
-    for share in (0.3, 0.7, 1.0, 0.7, 0.3):
+    for share in (0.3, 1.0, 0.3):
         view.page.evaluate(
             "s => { const e = document.getElementById('slider'); e.value = s * e.max; e.oninput(); }", share
         )
         shown = np.array(view.page.evaluate(field))
         assert np.array_equal(seen.setdefault(share, shown), shown)
-    assert seen[0.3][0] < seen[0.7][0] < seen[1.0][0]
+    assert seen[0.3][0] < seen[1.0][0]
     result = polycnc.run(EXAMPLES / "bracket.nc", "mill3", stock="auto", resolution_mm=0.5)
     assert isinstance(result.stock, Stock)
     heights = result.stock.heights - result.stock.grid.bottom

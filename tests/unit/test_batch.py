@@ -168,9 +168,9 @@ def test_a_program_that_wants_all_memory_is_stopped_alone(tmp_path: Path) -> Non
     (tmp_path / "a.nc").write_text("G1 X3 F500\nM30\n")
     (tmp_path / "big.nc").write_text("G1 X1 F900\nX2\n" * 400_000)
     (tmp_path / "z.nc").write_text("G1 X4 F500\nM30\n")
-    reports = _reports(polycnc.batch(tmp_path, jobs=1, memory_mb=24.0))
+    reports = _reports(polycnc.batch(tmp_path, jobs=1, memory_mb=48.0))
     assert [each["status"] for each in reports] == ["ok", "memory", "ok"]
-    assert "needs more than 24 MB of memory" in reports[1]["errors"][0]
+    assert "needs more than 48 MB of memory" in reports[1]["errors"][0]
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="POSIX signals")

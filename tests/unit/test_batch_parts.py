@@ -259,10 +259,13 @@ def test_many_small_programs_travel_together(tmp_path: Path, count: int, sizes: 
 
 def test_large_programs_travel_alone(tmp_path: Path) -> None:
     text = "G1 X5 F300\n"
-    for comment, together in (((1 << 16) - 14, 1), ((1 << 16) - 15, 2)):  # 64 KiB, and a byte less
+    for comment, together, pairs in (
+        ((1 << 16) - 14, 1, 20),
+        ((1 << 16) - 15, 2, 70),
+    ):  # 64 KiB, and a byte less
         content = "(" + "c" * comment + ")\n" + text
         workers = _Here()
-        _run(_programs(tmp_path, 2, content) * 70, ResultStore(None), workers)
+        _run(_programs(tmp_path, 2, content) * pairs, ResultStore(None), workers)
         assert {len(chunk) for chunk in workers.chunks} == {together}
 
 

@@ -35,7 +35,7 @@ def test_the_report_is_what_was_measured_and_reached(measured: tuple[RunResult, 
     result, folder = measured
     assert (folder / "flange.txt").read_bytes() == REPORT.encode() + b"\x03\n"
     assert result.alarms == []
-    assert result.time_s == pytest.approx(100.184, abs=0.0005)
+    assert result.time_s == pytest.approx(100.185, abs=0.0005)
 
 
 def test_the_probe_stays_at_the_wall_and_the_holes_lie_on_their_circle(
