@@ -78,6 +78,7 @@ def pytest_addoption(parser: pytest.Parser) -> None:
 def pytest_configure(config: pytest.Config) -> None:
     if config.getoption("markexpr") not in ("", "not long"):
         os.environ[ALL_CASES] = "1"
+    if ALL_CASES in os.environ:
         settings.load_profile("all cases")
 
 
