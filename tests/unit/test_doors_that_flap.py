@@ -141,8 +141,11 @@ def test_a_dropped_call_is_not_carried_out_and_those_before_it_are() -> None:
         try:
             reader, writer = await asyncio.open_connection("127.0.0.1", int(door.said.rpartition(":")[2]))
             writer.write(HELLO + OPEN + b"".join(calls))
-            with pytest.raises((asyncio.IncompleteReadError, ConnectionError)):
-                await reader.readexactly(10_000)
+            came = await reader.read(-1)  # the answers before it have come, however the bytes were cut
+            at, answers = 12, 0
+            while at < len(came):
+                at, answers = at + 4 + int.from_bytes(came[at : at + 4], "little"), answers + 1
+            assert (at, answers) == (len(came), 2)
             writer.close()
             device: Any = machine.device
             macros = device.custom_macros

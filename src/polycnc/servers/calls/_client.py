@@ -56,8 +56,8 @@ class CallClient:
 
     `find` returns the caller for a library and a packing, or None if no machine here has it. `tell` is told in a
     sentence what was refused. Whole frames are carried out one after the other. `treat` counts a call and says how it
-    is to be treated: what is dropped ends the connection and is not carried out, and `delay_s` is how much later all
-    answers of the last bytes come.
+    is to be treated: what is dropped ends the connection behind the answers before it and is not carried out, and
+    `delay_s` is how much later all answers of the last bytes come.
     """
 
     find: Callable[[str, int], Caller | None]
@@ -66,7 +66,6 @@ class CallClient:
     now_s: Callable[[], float] = lambda: 0.0
     treat: Callable[[], Treatment] = lambda: AS_USUAL
     ended: bool = False
-    dropped: bool = False
     delay_s: float = 0.0
     caller: Caller | None = None
     number: int = 0
@@ -130,7 +129,7 @@ class CallClient:
         """Carry out a call and return its answer; None if it is dropped."""
         treatment = self.treat()
         if treatment.drop:
-            self.ended = self.dropped = True
+            self.ended = True
             return None
         if treatment.delay_s > self.delay_s:
             self.delay_s = treatment.delay_s

@@ -118,6 +118,8 @@ class _Line(asyncio.BufferedProtocol):
         self._machines: list[ServedMachine] = []
         self._client = CallClient(self._find, server.tell, server.trace, self._now_s, self._treat)
         self._later: asyncio.TimerHandle | None = None
+        self._waiting = b""  # what is sent then
+        self._is_full = False  # the peer takes nothing
         self._limit: asyncio.TimerHandle | None = None
         self._buffer = memoryview(bytearray(_READ))
 
@@ -165,18 +167,20 @@ class _Line(asyncio.BufferedProtocol):
             self.abort()
 
     def _send(self, sent: bytes) -> None:
-        if self._client.dropped:
-            self.abort()
+        if self._later is not None:  # answers keep their order
+            self._waiting += sent
         elif self._client.delay_s and sent:  # the next call is not read before it is answered
             self.transport.pause_reading()
-            self._later = asyncio.get_running_loop().call_later(self._client.delay_s, self._send_late, sent)
+            self._waiting = sent
+            self._later = asyncio.get_running_loop().call_later(self._client.delay_s, self._send_late)
         else:
             self._send_now(sent)
 
-    def _send_late(self, sent: bytes) -> None:
+    def _send_late(self) -> None:
         self._later = None
-        self.transport.resume_reading()
-        self._send_now(sent)
+        if not self._is_full:
+            self.transport.resume_reading()
+        self._send_now(self._waiting)
 
     def _send_now(self, sent: bytes) -> None:
         if sent:
@@ -188,9 +192,11 @@ class _Line(asyncio.BufferedProtocol):
             self.transport.close()
 
     def pause_writing(self) -> None:
+        self._is_full = True
         self.transport.pause_reading()
 
     def resume_writing(self) -> None:
+        self._is_full = False
         if self._later is None:
             self.transport.resume_reading()
 

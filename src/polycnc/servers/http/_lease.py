@@ -70,7 +70,7 @@ class Lease:
             HeldError: Somebody else holds it.
         """
         holder = self.shown().holder
-        if holder is not None and not hmac.compare_digest(key.encode(), self._key.encode()):
+        if holder is not None and not hmac.compare_digest(key.encode("utf-8", "replace"), self._key.encode()):
             raise HeldError(f"{holder} commands this machine", hint="Wait, or take it over.")
 
     def take(self, asked: LeaseAsked) -> LeaseShown:
