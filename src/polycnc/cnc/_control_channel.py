@@ -270,13 +270,11 @@ class ControlChannel:
         self.switches = switches
         self._clock.changes += 1
         if self.run is not None:
-            self.run.switches.single_block, self.run.switches.optional_stop = (
-                switches.single_block,
-                switches.optional_stop,
-            )
+            own = self.run.switches
+            own.single_block, own.optional_stop = switches.single_block, switches.optional_stop
             self.run.overrides.dry_run = switches.dry_run
-            self.run.switches.machine_lock = switches.machine_lock
-            self.run.switches.block_delete = switches.block_delete
+            own.machine_lock = switches.machine_lock
+            own.block_delete = switches.block_delete
 
     def set_overrides(self, overrides: Overrides) -> None:
         """Take over the overrides."""
