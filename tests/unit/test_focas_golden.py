@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import functools
+
 import pytest
 
 from polycnc.servers.focas import (
@@ -14,6 +16,7 @@ from polycnc.servers.focas import (
     FrameType,
     Reply,
     Request,
+    Session,
     from_hex,
     load_profile,
     read_replies,
@@ -36,8 +39,14 @@ def test_the_golden_files_ask_for_every_command() -> None:
     assert set(COMMANDS) >= WRITING
 
 
+@functools.cache
+def connected(profile: str) -> Session:
+    """Return a connection over which a control is read and never changed."""
+    return open_session(scene_control(profile))[0]
+
+
 def replies(profile: str, *requests: Request) -> list[Reply]:
-    session, _ = open_session(scene_control(profile))
+    session = connected(profile)
     (answer,) = FrameReader().feed(
         session.receive(bytes(Frame(FrameType.COMMANDS, write_requests(requests))))
     )
