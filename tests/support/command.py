@@ -73,6 +73,24 @@ def script(path: Path, text: str, cwd: Path, **more: str) -> subprocess.Complete
     return _answered([str(path)], cwd, {"script": str(path), "text": text, "environment": more})
 
 
+def python(
+    code: str | Path, *arguments: str | Path, cwd: Path | None = None, status: int | None = 0
+) -> subprocess.CompletedProcess[str]:
+    """Let such a process become a script, or code as after `python -c`; hold it to an exit status, if there is one."""
+    words = [str(each) for each in arguments]
+    what = ["-c", code] if isinstance(code, str) else [str(code)]
+    if hasattr(os, "fork"):
+        kind = {"code": code} if isinstance(code, str) else {"script": str(code)}
+        done = _answered([*what, *words], cwd, {**kind, "arguments": words})
+    else:
+        done = subprocess.run(
+            [sys.executable, *what, *words], cwd=cwd, env=environment(), capture_output=True, text=True,
+            encoding="utf-8", timeout=TIMEOUT_S, check=False,
+        )  # fmt: skip
+    assert status is None or done.returncode == status, f"exit status {done.returncode}\n{done.stderr}"
+    return done
+
+
 def _answered(
     words: list[str], cwd: Path | None, request: dict[str, object]
 ) -> subprocess.CompletedProcess[str]:
