@@ -21,10 +21,11 @@ TIMEOUT_S = 240.0
 def environment(**more: str) -> dict[str, str]:
     """Return the environment of a user's process: without what tests set, and 80 columns wide."""
     # One of pytest's variables is another one in every test, which would mean a server for each of them.
+    own = ("POLYCNC_OPEN_INTERNALS", "POLYCNC_COMPILE_AT_ONCE")
     kept = {
         name: value
         for name, value in os.environ.items()
-        if name != "POLYCNC_OPEN_INTERNALS" and not name.startswith("PYTEST_")
+        if name not in own and not name.startswith("PYTEST_")
     }
     return {**kept, "COLUMNS": "80", "PYTHONUTF8": "1", **more}
 
@@ -121,7 +122,7 @@ def _server(environment: tuple[tuple[str, str], ...]) -> subprocess.Popen[str]:
     """Return the running server; another where a test has changed the environment."""
     server = subprocess.Popen(
         [sys.executable, str(Path(__file__).with_name("command_server.py"))],
-        env=dict(environment),
+        env={**dict(environment), "POLYCNC_COMPILE_AT_ONCE": "1"},
         stdin=subprocess.PIPE,
         stdout=subprocess.PIPE,
         text=True,
