@@ -15,6 +15,7 @@ from polycnc.machine import Clock, Host, HostError, Pace, Wall
 
 R = TypeVar("R")
 _BUSY_BEAT_S = 0.1  # as watches look; whoever asks, or is told more often, lets time pass himself
+_UNSEEN_BEAT_S = 0.3  # where nobody watches; well below what is dropped as late
 _IDLE_BEAT_S = 1.0
 _MOST_CYCLES = 20_000  # that are caught up with in one go
 _MOST_LATE_S = 0.5
@@ -58,6 +59,10 @@ class Kept(Protocol):
     @property
     def busy(self) -> bool:
         """Whether something happens in it, so that time has to pass often."""
+
+    @property
+    def is_followed(self) -> bool:
+        """Whether somebody wants to see it as soon as it happens."""
 
     def advance(self, cycles: int, *, is_enough: Callable[[], bool] | None = None) -> int:
         """Let up to `cycles` control cycles pass, or until `is_enough` says so; return how many did."""
@@ -158,9 +163,14 @@ class Keeper:
         loop = asyncio.get_running_loop()
         now_s = loop.time()
         self._latest_s = max(self._latest_s, now_s - self._due_s)
-        beat_s = 0.0 if late else _BUSY_BEAT_S if self._served.busy else _IDLE_BEAT_S
+        beat_s = 0.0 if late else self._beat_s()
         self._due_s = min(self._due_s, now_s) if late else now_s + beat_s
         self._timer = loop.call_later(beat_s, self._beat)
+
+    def _beat_s(self) -> float:
+        if not self._served.busy:
+            return _IDLE_BEAT_S
+        return _BUSY_BEAT_S if self._served.is_followed else _UNSEEN_BEAT_S
 
     def _soon(self) -> None:
         """Look soon: the rate has changed, or steps are due."""
