@@ -7,10 +7,11 @@ import ctypes
 import subprocess
 import threading
 from pathlib import Path
+from typing import Any
 
 import pytest
 
-from polycnc.controllers.apci import pcap
+from polycnc.controllers.apci import Board, load_system_file, pcap
 from polycnc.servers.process import Machinery
 from support.c_library import Door, at_door, built, loaded
 from support.command import environment
@@ -58,8 +59,22 @@ def _run(door: Door, source: Path, to: Path) -> tuple[str, int]:
     return ran.stdout, ran.returncode
 
 
+def _compile_motion() -> None:
+    """Move a board once: what is compiled then would take longer than a program waits for an answer."""
+    board, session = Board(load_system_file(SYSTEM)), pcap.Session()
+    session.attach(board)
+    table = pcap.AS(unoa=2)
+    table.san[1] = 1
+    session.InitMcuSystem(pcap.tsrp_array())
+    session.cl(table)
+    session.smla(table, pcap.LMP(ac=500.0, vl=80.0))
+    session.ssms(table)
+    board.advance(200)
+
+
 @pytest.mark.covers("apci.MCUG3_SetBoardIntRoutine", "apci.MCUG3_ResetBoardIntRoutine", "apci.ssf.1101")
 def test_a_routine_is_called_where_the_spooler_says_and_no_call_ends_meanwhile(tmp_path: Path) -> None:
+    _compile_motion()
     door = Door(("apci", Machinery(file=SYSTEM)), running=True)
     try:
         assert _run(door, EXAMPLES / "apci_interrupts.c", tmp_path) == (DRILLED, 0)
@@ -93,8 +108,9 @@ def _interrupt(door: Door) -> None:
     """Let the board interrupt the PC, and take the request back."""
 
     async def rise() -> None:
-        door.devices[0].raise_interrupt(True)  # type: ignore[attr-defined]
-        door.devices[0].raise_interrupt(False)  # type: ignore[attr-defined]
+        board: Any = door.devices[0]
+        board.raise_interrupt(True)
+        board.raise_interrupt(False)
 
     assert door.loop is not None
     asyncio.run_coroutine_threadsafe(rise(), door.loop).result(20)
