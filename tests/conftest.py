@@ -2,10 +2,15 @@
 
 from __future__ import annotations
 
+import gc
 import os
+import sys
 from collections import Counter
 from pathlib import Path
 
+# Hundreds of processes start in the tests: byte code is kept, whatever the surroundings say.
+os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
+sys.dont_write_bytecode = False
 # Before polycnc is imported: tests may call compiled functions that are not entries.
 os.environ["POLYCNC_OPEN_INTERNALS"] = "1"
 # And they try compiled code, whatever was compiled before them.
@@ -13,6 +18,7 @@ os.environ["POLYCNC_COMPILE_AT_ONCE"] = "1"
 
 import pytest
 from hypothesis import settings
+from hypothesis.internal.conjecture import providers
 
 from polycnc import conformance
 from support.often import ALL_CASES
@@ -80,6 +86,10 @@ def pytest_configure(config: pytest.Config) -> None:
         os.environ[ALL_CASES] = "1"
     if ALL_CASES in os.environ:
         settings.load_profile("all cases")
+    else:
+        # Hypothesis would read every module, in every worker, for numbers and texts to try: seconds, and with every
+        # change of the code other cases.
+        vars(providers)["is_local_module_file"] = lambda path: False
 
 
 @pytest.hookimpl(tryfirst=True)  # before -k and -m take tests away
@@ -103,6 +113,13 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
         if problems:
             raise pytest.UsageError(*problems)
         Path(path).write_text(conformance.claims_text(claims), encoding="utf-8")
+
+
+def pytest_collection_finish() -> None:
+    """Keep what was collected, some hundred megabytes, out of every search for garbage in the tests."""
+    gc.collect()
+    gc.freeze()
+    gc.set_threshold(10_000, 20, 50)
 
 
 @pytest.hookimpl(tryfirst=True)

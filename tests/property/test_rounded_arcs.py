@@ -8,7 +8,7 @@ import math
 import numpy as np
 import numpy.typing as npt
 import pytest
-from scipy.spatial import cKDTree
+import scipy
 
 import polycnc
 from polycnc.kernel import (
@@ -328,7 +328,7 @@ def test_a_program_of_lines_and_arcs_keeps_tolerance_and_limits() -> None:
     assert rounded.time_s < 0.97 * exact.time_s
     assert polycnc.verify_trace(rounded.trace, machine) == []
     assert tuple(rounded.trace.setpoint[-1]) == tuple(exact.trace.setpoint[-1])
-    off, _ = cKDTree(exact.trace.setpoint).query(rounded.trace.setpoint)
+    off, _ = scipy.spatial.cKDTree(exact.trace.setpoint).query(rounded.trace.setpoint)
     # Of a step of 0.15 mm in a cycle the nearest point is 0.075 mm at most away along the path.
     assert 0.03 < float(off.max()) < math.hypot(0.05, 0.075) + 0.002
 

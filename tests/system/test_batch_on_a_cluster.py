@@ -8,6 +8,7 @@ import subprocess
 import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
+from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
@@ -19,7 +20,9 @@ from polycnc.runner import batches
 from support.command import environment
 from support.command import polycnc as command
 
-pytest.importorskip("distributed", reason="no dask.distributed: pip install 'polycnc[cluster]'")
+pytestmark = pytest.mark.skipif(
+    find_spec("distributed") is None, reason="no dask.distributed: pip install 'polycnc[cluster]'"
+)
 
 PROGRAM = "G0 X{0} Y2\nG1 X{1} F{2}\nG2 X{1} Y2 I7\nM30\n"
 PROGRAMS = 40

@@ -6,15 +6,14 @@ import os
 import subprocess
 import sys
 from dataclasses import dataclass
+from typing import Any
 
 import hypothesis.strategies as st
 import numpy as np
 import numpy.typing as npt
 import pytest
+import scipy
 from hypothesis import given, settings
-from scipy.integrate import quad
-from scipy.interpolate import BPoly
-from scipy.optimize import brentq
 
 from polycnc.kernel import MOST_SPANS, SPAN_CURVED, SPAN_END, SPAN_LENGTH, SPAN_SIZE, cut_bezier
 from polycnc.kernel._bezier import BEND_BOUND, SHORTEST_MM, TANGENT_BOUND, bezier_point, bezier_tangent
@@ -37,7 +36,7 @@ class Cut:
     """A curve as it was cut, with the way from the start of each span."""
 
     spans: Floats
-    curve: BPoly
+    curve: Any
 
     @property
     def lengths(self) -> Floats:
@@ -69,14 +68,14 @@ def cut(control: list[tuple[float, float]]) -> Cut:
     spans = np.zeros((MOST_SPANS, SPAN_SIZE))
     count = cut_bezier(points, spans)
     assert count >= 0
-    return Cut(spans[:count], BPoly(points[:, None, :], [0.0, 1.0]))
+    return Cut(spans[:count], scipy.interpolate.BPoly(points[:, None, :], [0.0, 1.0]))
 
 
-def length_of(curve: BPoly, low: float, high: float) -> float:
+def length_of(curve: Any, low: float, high: float) -> float:
     velocity = curve.derivative()
-    total: float = quad(lambda u: float(np.linalg.norm(velocity(u))), low, high, epsabs=1e-13, epsrel=1e-13)[
-        0
-    ]
+    total: float = scipy.integrate.quad(
+        lambda u: float(np.linalg.norm(velocity(u))), low, high, epsabs=1e-13, epsrel=1e-13
+    )[0]
     return total
 
 
@@ -89,7 +88,11 @@ def test_a_length_leads_where_the_curve_is_after_that_length(name: str) -> None:
     for number, length in enumerate(found.lengths):
         for part in (0.0, 0.21, 0.5, 0.83):
             s = before + part * length
-            u = brentq(lambda x, s=s: length_of(found.curve, 0.0, x) - s, 0.0, 1.0, xtol=1e-15) if s else 0.0
+            u = (
+                scipy.optimize.brentq(lambda x, s=s: length_of(found.curve, 0.0, x) - s, 0.0, 1.0, xtol=1e-15)
+                if s
+                else 0.0
+            )
             away = found.point(number, part) - found.curve(u)
             direction = found.curve.derivative()(u)
             direction /= np.linalg.norm(direction)

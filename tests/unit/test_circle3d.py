@@ -7,7 +7,7 @@ import math
 import numpy as np
 import numpy.typing as npt
 import pytest
-from scipy.spatial.transform import Rotation
+import scipy
 
 from polycnc.kernel._circle3d import (
     CIRCLE3D_NO_NORMAL,
@@ -51,9 +51,9 @@ def test_points_are_the_start_turned_by_the_right_hand_about_the_normal(
 ) -> None:
     centre = moved_centre(START, CENTRE, NORMAL)
     axis = NORMAL / np.linalg.norm(NORMAL)
-    turned = Rotation.from_rotvec(axis * math.radians(math.fmod(fraction * sweep_deg, 360.0))).apply(
-        START - centre
-    )
+    turned = scipy.spatial.transform.Rotation.from_rotvec(
+        axis * math.radians(math.fmod(fraction * sweep_deg, 360.0))
+    ).apply(START - centre)
     np.testing.assert_allclose(
         point(circle(START, CENTRE, NORMAL, sweep_deg), fraction), centre + turned, atol=1e-13, rtol=0.0
     )

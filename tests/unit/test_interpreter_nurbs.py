@@ -9,8 +9,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 import pytest
-from scipy.interpolate import BSpline
-from scipy.optimize import minimize_scalar
+import scipy
 
 import polycnc
 from polycnc.kernel._segments import SPLINE
@@ -40,7 +39,7 @@ def curve_of(points: Points, order: int) -> Any:
     spans = len(points) - order + 1
     knots = [0] * (order - 1) + list(range(spans + 1)) + [spans] * (order - 1)
     homogeneous = np.array([(x * w, y * w, w) for x, y, w in points])
-    spline = BSpline(knots, homogeneous, order - 1)
+    spline = scipy.interpolate.BSpline(knots, homogeneous, order - 1)
 
     def at(u: Any) -> Floats:
         value = spline(np.clip(u, 0.0, spans))
@@ -57,7 +56,7 @@ def off(points: Floats, control: Points, order: int) -> float:
     worst = 0.0
     for point in points:
         near = int(np.clip(np.argmin(np.sum((dense - point) ** 2, axis=1)), 1, len(u) - 2))
-        found = minimize_scalar(
+        found = scipy.optimize.minimize_scalar(
             lambda v, point=point: float(np.sum((at(v) - point) ** 2)),
             bounds=(u[near - 1], u[near + 1]),
             method="bounded",

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 import pytest
-from scipy.interpolate import BPoly
+import scipy
 
 import polycnc
 from polycnc.kernel._segments import SPLINE
@@ -33,7 +33,7 @@ def refused(program: str) -> str:
 
 def off(points: Floats, *controls: list[tuple[float, float]]) -> float:
     """Return how far the furthest of some points is from Bezier curves, as scipy evaluates them."""
-    curves = [BPoly(np.array(control)[:, None, :], [0.0, 1.0]) for control in controls]
+    curves = [scipy.interpolate.BPoly(np.array(control)[:, None, :], [0.0, 1.0]) for control in controls]
     u = np.linspace(0.0, 1.0, 20001)
     worst = 0.0
     for point in points:
@@ -49,7 +49,7 @@ def off(points: Floats, *controls: list[tuple[float, float]]) -> float:
 
 
 def length_of(control: list[tuple[float, float]]) -> float:
-    dense = BPoly(np.array(control)[:, None, :], [0.0, 1.0])(np.linspace(0.0, 1.0, 100_001))
+    dense = scipy.interpolate.BPoly(np.array(control)[:, None, :], [0.0, 1.0])(np.linspace(0.0, 1.0, 100_001))
     return float(np.linalg.norm(np.diff(dense, axis=0), axis=1).sum())
 
 
@@ -189,7 +189,12 @@ def test_a_run_traces_the_curve_measures_it_and_keeps_its_feed(tmp_path: Path) -
     assert off(points[::29], *CONTROL) < 1e-7
     assert points[-1].tolist() == [23.0, 1.5]
     assert result.cutting_path_mm == pytest.approx(sum(length_of(control) for control in CONTROL), rel=1e-8)
-    dense = np.vstack([BPoly(np.array(c)[:, None, :], [0.0, 1.0])(np.linspace(0, 1, 10001)) for c in CONTROL])
+    dense = np.vstack(
+        [
+            scipy.interpolate.BPoly(np.array(c)[:, None, :], [0.0, 1.0])(np.linspace(0, 1, 10001))
+            for c in CONTROL
+        ]
+    )
     low, high = result.extents_mm["Y"]
     assert (low, high) == pytest.approx((dense[:, 1].min(), dense[:, 1].max()), abs=1e-4)
     assert {block.kind for block in result.trace.execution.blocks} == {"spline"}

@@ -5,7 +5,7 @@ from __future__ import annotations
 import itertools
 
 import pytest
-from scipy import optimize
+import scipy
 
 from polycnc.kernel._jerk import brake_phases, brake_way, fastest_start, moved, wanted_rate
 
@@ -50,7 +50,7 @@ def test_braking_ends_at_its_speed_without_acceleration_within_its_limits(
 def test_the_fastest_start_brakes_in_just_its_way(speed: float, way: float, accel: float) -> None:
     found = fastest_start(speed, way, accel, JERK)
     assert brake_way(found, 0.0, speed, accel, JERK) == pytest.approx(way, rel=1e-9)
-    by_search = optimize.brentq(
+    by_search = scipy.optimize.brentq(
         lambda begin: brake_way(begin, 0.0, speed, accel, JERK) - way, speed, speed + 400.0, xtol=1e-10
     )
     assert found == pytest.approx(by_search, abs=1e-7)

@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 import pytest
-from scipy import signal
+import scipy
 
 from polycnc.kernel._plant import Plant, make_plant, measured, plant_cycle, plant_place
 
@@ -36,8 +36,10 @@ def test_held_commands_give_the_continuous_response_of_the_lag() -> None:
     plant.row["gain"][0] = gain
     commands = [math.sin(0.3 * k) * 50.0 for k in range(200)]
     positions, velocities = run(plant, commands)
-    system = signal.StateSpace([[0, 1], [0, -1 / lag_s]], [[0], [gain / lag_s]], np.eye(2), np.zeros((2, 1)))
-    _, expected, _ = signal.lsim(system, commands + [0.0], np.arange(201) * DT, interp=False)
+    system = scipy.signal.StateSpace(
+        [[0, 1], [0, -1 / lag_s]], [[0], [gain / lag_s]], np.eye(2), np.zeros((2, 1))
+    )
+    _, expected, _ = scipy.signal.lsim(system, commands + [0.0], np.arange(201) * DT, interp=False)
     assert positions == pytest.approx(expected[1:, 0], abs=1e-11)
     assert velocities == pytest.approx(expected[1:, 1], abs=1e-10)
 

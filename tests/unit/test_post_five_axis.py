@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 import pytest
-from scipy.spatial.transform import Rotation
+import scipy
 
 from polycnc.errors import ConfigurationError, ProgramError
 from polycnc.post import FiveAxis, Parameters, parse_control, parse_tool_path, shipped_text
@@ -55,10 +55,10 @@ MACHINES = {
 }
 
 
-def turn(each: Any, angle_deg: float) -> Rotation:
+def turn(each: Any, angle_deg: float) -> Any:
     """Return the rotation of an axis by scipy."""
     direction = np.asarray(each.direction) / np.linalg.norm(each.direction)
-    return Rotation.from_rotvec(direction * math.radians(angle_deg))
+    return scipy.spatial.transform.Rotation.from_rotvec(direction * math.radians(angle_deg))
 
 
 def tip_on_part(

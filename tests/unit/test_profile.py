@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 import pytest
-from scipy.integrate import cumulative_simpson, cumulative_trapezoid
+import scipy
 
 from polycnc.kernel._profile import (
     PROFILE_REFUSED,
@@ -99,8 +99,10 @@ def integrated(profile: Profile, samples: int = 65) -> tuple[float, float]:
     velocity = float(profile.phases[0, VELOCITY])
     for duration, _, _, acceleration, jerk in profile.phases[: profile.count]:
         times = np.linspace(0.0, duration, samples)
-        velocities = velocity + cumulative_trapezoid(acceleration + jerk * times, times, initial=0.0)
-        position += float(cumulative_simpson(velocities, x=times, initial=0.0)[-1])
+        velocities = velocity + scipy.integrate.cumulative_trapezoid(
+            acceleration + jerk * times, times, initial=0.0
+        )
+        position += float(scipy.integrate.cumulative_simpson(velocities, x=times, initial=0.0)[-1])
         velocity = float(velocities[-1])
     return position, velocity
 

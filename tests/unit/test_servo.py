@@ -13,7 +13,7 @@ from pathlib import Path
 import numpy as np
 import numpy.typing as npt
 import pytest
-from scipy import signal
+import scipy
 
 from polycnc.kernel._plant import Plant, make_plant
 from polycnc.kernel._servo import (
@@ -57,7 +57,7 @@ def sampled_filter(kp: float, ki: float, kd: float, kpl: float, dt: float) -> tu
     lag_s = (1.0 - kpl) * dt / 2.0
     if lag_s == 0.0:
         return list(pid), [1.0, -1.0, 0.0]
-    num, den, _ = signal.cont2discrete(([1.0], [lag_s, 1.0]), dt, method="foh")
+    num, den, _ = scipy.signal.cont2discrete(([1.0], [lag_s, 1.0]), dt, method="foh")
     return list(np.polymul(pid, num[0])), list(np.polymul([1.0, -1.0, 0.0], den))
 
 
@@ -76,11 +76,11 @@ def test_step_response_equals_the_sampled_linear_system(
 ) -> None:
     gain, cycles = 0.9, 400
     drive = ([gain], [1.0, 0.0]) if lag_s == 0.0 else ([gain], [lag_s, 1.0, 0.0])
-    num_p, den_p, _ = signal.cont2discrete(drive, DT, method="zoh")
+    num_p, den_p, _ = scipy.signal.cont2discrete(drive, DT, method="zoh")
     num_c, den_c = sampled_filter(kp, ki, kd, kpl, DT)
     ahead = np.polymul(num_c, num_p[0])
-    closed = signal.dlti(ahead, np.polyadd(np.polymul(den_c, den_p), ahead), dt=DT)
-    _, (expected,) = signal.dstep(closed, n=cycles)
+    closed = scipy.signal.dlti(ahead, np.polyadd(np.polymul(den_c, den_p), ahead), dt=DT)
+    _, (expected,) = scipy.signal.dstep(closed, n=cycles)
     servo, plant = loop(kp=kp, ki=ki, kd=kd, kpl=kpl, lag_s=lag_s, gain=gain)
     follow(servo, plant, [0.0])
     got = follow(servo, plant, np.ones(cycles))
@@ -89,9 +89,9 @@ def test_step_response_equals_the_sampled_linear_system(
 
 def test_small_cycles_approach_the_continuous_loop() -> None:
     kp, ki, kd, lag_s, dt = 30.0, 100.0, 0.1, 0.02, 2e-5
-    closed = signal.TransferFunction([kd, kp, ki], [lag_s, 1.0 + kd, kp, ki])
+    closed = scipy.signal.TransferFunction([kd, kp, ki], [lag_s, 1.0 + kd, kp, ki])
     times = np.arange(4000) * dt
-    _, expected = signal.step(closed, T=times)
+    _, expected = scipy.signal.step(closed, T=times)
     servo, plant = loop(kp=kp, ki=ki, kd=kd, lag_s=lag_s)
     follow(servo, plant, [0.0], dt=dt)
     got = follow(servo, plant, np.ones(4000), dt=dt)

@@ -10,9 +10,10 @@ import difflib
 import functools
 import inspect
 import linecache
+import re
 import tomllib
 from collections.abc import Callable, Iterable, Mapping
-from fnmatch import fnmatchcase
+from fnmatch import translate
 from pathlib import Path
 
 from polycnc.conformance._rows import SYSTEMS, Row, table_lines
@@ -74,7 +75,8 @@ def read_not_applicable(folder: Path, rows: Mapping[str, Row]) -> dict[str, str]
             )
         ids = [row.id for row in rows.values() if row.system == system]
         for pattern, reason in table.items():
-            fitting = [row_id for row_id in ids if fnmatchcase(row_id, pattern)]
+            fits = re.compile(translate(pattern)).match
+            fitting = [row_id for row_id in ids if fits(row_id)]
             _check_entry(f"{path.name}: '{pattern}'", reason, fitting, reasons)
             reasons |= {row_id: str(reason) for row_id in fitting}
     return reasons

@@ -11,6 +11,7 @@ import numpy.typing as npt
 from polycnc.nc.blocks._tables import COMMON_OFFSET, ProgramTables
 from polycnc.nc.modal._frame import Rotation
 from polycnc.nc.modal._modal import Modal
+from polycnc.nc.modal._placement import NO_SHIFTS, Shifts
 
 Floats: TypeAlias = npt.NDArray[np.float64]
 
@@ -102,10 +103,22 @@ class Coordinates:
 
     def total(self, tables: ProgramTables, modal: Modal) -> Floats:
         """Return the sum of all shifts."""
+        return self._with_offsets(self._within() + self.tool_offset(tables, modal) + self.outer, tables)
+
+    def shifts(self) -> Shifts:
+        """Return what is shown of the program's own."""
+        preset = self.shift if self.shifted else np.zeros(0)
+        within = self._within()
+        if self.turn is None and not within.any():
+            return NO_SHIFTS
+        return Shifts(tuple(preset.tolist()), tuple(within.tolist()), self.turn)
+
+    def _within(self) -> Floats:
+        """Return what the program itself shifts by, turned with the workpiece."""
         within = self.shift + self.local + self.inner if self.shifted else self.local + self.inner
         if (turn := self.turn) is not None:
             within[turn.p], within[turn.q] = turn.turned(float(within[turn.p]), float(within[turn.q]))
-        return self._with_offsets(within + self.tool_offset(tables, modal) + self.outer, tables)
+        return within
 
     def _with_offsets(self, found: Floats, tables: ProgramTables) -> Floats:
         names = (COMMON_OFFSET, *self.work) if tables.has_offset(COMMON_OFFSET) else self.work

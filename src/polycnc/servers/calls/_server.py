@@ -12,6 +12,7 @@ from polycnc.errors import UsageError
 from polycnc.servers.calls._caller import Caller
 from polycnc.servers.calls._client import CallClient
 from polycnc.servers.calls._libraries import LIBRARIES
+from polycnc.servers.calls._linger import Linger
 from polycnc.servers.calls._trace import Trace
 from polycnc.servers.machines import AS_USUAL, LOOPBACK, Log, ServedMachine, Treatment, notice_loss, peers_of
 
@@ -143,6 +144,7 @@ class _Line(asyncio.BufferedProtocol):
         assert isinstance(transport, asyncio.Transport)
         self.transport = transport
         notice_loss(transport)
+        self._linger = Linger(transport, self._buffer)
         if len(self._server.lines) >= _MOST_CLIENTS:
             self._server.tell(f"more than {_MOST_CLIENTS} clients")
             transport.abort()
@@ -155,6 +157,9 @@ class _Line(asyncio.BufferedProtocol):
 
     def buffer_updated(self, nbytes: int) -> None:
         self.take(bytes(self._buffer[:nbytes]))
+        if self._machines:
+            for count in self._linger.received():
+                self.take(bytes(self._buffer[:count]))
 
     def take(self, data: bytes) -> None:
         """Carry out what is whole with these bytes."""
@@ -202,6 +207,7 @@ class _Line(asyncio.BufferedProtocol):
 
     def connection_lost(self, error: Exception | None) -> None:
         self._server.lines.discard(self)
+        self._linger.close()
         if self._later is not None:
             self._later.cancel()
         if self._limit is not None:
