@@ -18,7 +18,7 @@ import numpy as np
 import numpy.typing as npt
 from pydantic import AfterValidator, Field, model_validator
 
-from polycnc.errors import UsageError
+from polycnc.errors import UsageError, did_you_mean
 from polycnc.machine import PathConfig, StrictModel, load_toml, parse_toml, problem, validate
 from polycnc.nc.dialect._cycle_settings import Cycles, CycleSettings
 from polycnc.nc.modal._actions import M_ACTIONS, M_SENSES, NO_SENSE, Action, Family, Group, MAction, of_family
@@ -485,5 +485,5 @@ def load_dialect(source: str | Path | Dialect | None = None) -> Dialect:
         return validate(Dialect, data, locator)
     raise UsageError(
         f"there is no dialect '{source}'",
-        hint=f"Use {', '.join(_SHIPPED)}, or a TOML file that describes one.",
+        hint=f"{did_you_mean(str(source), _SHIPPED)}Use {', '.join(_SHIPPED)}, or a TOML file that describes one.",
     )

@@ -8,7 +8,7 @@ from pathlib import PureWindowsPath
 from typing import Any
 
 from polycnc.controllers.library.clib import CLibrary
-from polycnc.errors import UsageError
+from polycnc.errors import UsageError, did_you_mean
 from polycnc.machine import Way
 from polycnc.servers.calls._caller import Caller
 
@@ -111,5 +111,8 @@ def library_of(kind: str) -> CLibrary:
         UsageError: There is none.
     """
     if kind not in LIBRARIES:
-        raise UsageError(f"there is no C library of '{kind[:40]}'", hint=f"There are {', '.join(LIBRARIES)}.")
+        raise UsageError(
+            f"there is no C library of '{kind[:40]}'",
+            hint=f"{did_you_mean(kind, LIBRARIES)}There are {', '.join(LIBRARIES)}.",
+        )
     return LIBRARIES[kind].load()
