@@ -138,7 +138,7 @@ def test_an_override_that_falls_and_rises_again_costs_no_time(override: float) -
     config = machine(0.01, 389.0)
     text = "G91\nG1 X-8 F600\nX-1\n"
     wanted, _ = stops(text, config, {}, override=override)
-    for cycle in range(1, wanted[-1].cycle):
+    for cycle in range(1, wanted[-1].cycle, 2):
         found, acceleration = stops(text, config, {cycle: _override}, override=override)
         assert found == wanted, cycle
         assert acceleration <= 389.0 * ROUNDING, cycle
