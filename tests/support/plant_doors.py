@@ -8,6 +8,7 @@ from collections.abc import Mapping
 from typing import Any
 from xml.etree import ElementTree
 
+from support.browser import new_page
 from support.mtconnect import values_of
 
 CHANNEL, SPINDLE = "machine/CncChannelList/Channel1", "machine/CncSpindleList/Spindle1"
@@ -165,7 +166,7 @@ class Page:
     """The operator's page in a browser."""
 
     def __init__(self, browser: Any, url: str) -> None:
-        self._page = browser.new_page()
+        self._page = new_page(browser, device_scale_factor=0.5)
         self._page.goto(url)
         self._page.wait_for_selector("body:not(.lost)")
 

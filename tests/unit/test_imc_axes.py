@@ -64,7 +64,7 @@ SCENES: dict[str, tuple[str, Steps]] = {
         "",
         [
             (30, {"mcsaccel": 0.6, "master": 1, "gearsrc": address("mcsvel"), "gearratio": -0.75, "engear": FLAG}),
-            (20, {"gearoutmod": FLAG, "gearoutvel": 2, "engear": 0}),
+            (20, {"gearoutmod": FLAG, "gearoutvel": -2.25, "engear": 0}),
             (40, {"syntype": FLAG, "synsrc": address("mcspos"), "synaxis": 1, "synsrcvar": 150, "slavedist": -90,
                   "enasyn": FLAG, "startsyn": FLAG}),
         ],
@@ -83,6 +83,19 @@ SCENES: dict[str, tuple[str, Steps]] = {
             (40, {"mcsdist": -33, "mcsgo": FLAG, "pcsdist": 21, "pcsaccel": 0.3, "pcsdecel": 0.6, "pcsgo": FLAG}),
             (30, {"pcstgpos": -15, "pcsmaxvel": 3, "pcsgo": FLAG, "pcstrack": FLAG}),
             (30, {"pcstgpos": 4, "exitfilt": 0, "fixvel": 2}),
+        ],
+    ),
+    "far": (
+        "lag_s = 0.003\ngain = 80.0\n",
+        [
+            (2, {"homepos": 131000, "sethome": FLAG}),
+            (30, {"mcsmaxvel": 40, "mcsaccel": 6, "mcsdecel": 4, "mcstgpos": 131300,
+                  "mcsgo": FLAG, "breakp": 131085, "encsfactor": 400.25, "spin_handwheel": 21, "encpctr": 0x400}),
+            (20, {"capture": FLAG, "touch_probe": 0, "pcsdist": -70000, "pcsmaxvel": 5000, "pcsaccel": 1200,
+                  "pcsdecel": 900, "pcsgo": FLAG}),
+            (30, {"aioctr": 0x8000, "nsoftlim": 65530, "stopfilt": 8, "mcstgvel": -900, "mcsdecel": 60,
+                  "mcsaccel": 200, "spin_handwheel": -30}),
+            (30, {"cirpos": 70001, "ciraxis": FLAG, "error": 0, "aioctr": 0, "mcstgvel": 30000}),
         ],
     ),
     "home back": (
@@ -139,8 +152,9 @@ CARD: dict[str, list[tuple[int, list[tuple[Any, ...]]]]] = {
             20,
             [
                 ("groupnum", 3), ("group_x", 2), ("group_y", 0), ("group_z", 3), ("groupsmooth", 4),
-                ("startgroup", FLAG), (CFIFO, 9, -7, 5, 13, -11, 3, 15, -6, -2, 17, 4, -8, 6, 10, 2),
-                ("delayus", 17000), ("timer", 21),
+                ("startgroup", FLAG), ("ticks", 2**32 - 30),
+                (CFIFO, 9, -7, 5, 13, -11, 3, 15, -6, -2, 17, 4, -8, 6, 10, 2),
+                ("delayus", 90000), ("timer", 21),
             ],
         ),
         (12, [("hpause", 1)]),
@@ -151,6 +165,7 @@ CARD: dict[str, list[tuple[int, list[tuple[Any, ...]]]]] = {
         (
             30,
             [
+                ("ticks", 65520),
                 (QFIFO, setting("user16b3", 5)), (QFIFO, WaitTime(7)), (QFIFO, setting("user32b2", -70000)),
                 (QFIFO, ChangeBits(address("user16b3"), 6, 12)), (QFIFO, WaitParam(address("user16b2"), 9, 12, 0, 11)),
                 (QFIFO, setting("user48b1", -(1 << 40))), (QFIFO, WaitParam(address("user16b2"), 77)),

@@ -32,7 +32,7 @@ class Cycle:
     """Hold the active drilling cycle (its action, empty: none; the G code that called it) and its words.
 
     Levels are those of the program; `initial` is where the drilling axis was when the first cycle began, in machine
-    coordinates.
+    coordinates. `last_dwell_s` is the last dwell of a cycle, which some controls keep.
     """
 
     action: str = ""
@@ -40,6 +40,7 @@ class Cycle:
     retract_to_initial: bool = True
     initial: float = 0.0
     words: CycleWords = field(default_factory=CycleWords)
+    last_dwell_s: float | None = None
 
 
 @dataclass
@@ -196,7 +197,8 @@ class ChannelState(Plain):
     def leave_drilling(self) -> None:
         """Leave a drilling cycle, and forget its words."""
         if self.cycle.action:
-            self.cycle = Cycle(retract_to_initial=self.cycle.retract_to_initial)
+            old = self.cycle
+            self.cycle = Cycle(retract_to_initial=old.retract_to_initial, last_dwell_s=old.last_dwell_s)
             self.rigid_tap = False
         if self.mode is Family.DRILLING:
             self.mode = Family.MOVE

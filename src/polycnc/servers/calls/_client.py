@@ -17,6 +17,7 @@ _HELLO = struct.Struct("<8sBBH16s16s16s")
 _WELCOME = struct.Struct("<8si")
 _SIZE = struct.Struct("<I")
 _HEAD = struct.Struct("<IHH")
+_INTERRUPT = struct.Struct("<IHHi")
 _BEGIN = _HEAD.size
 _LEAST = _HEAD.size - _SIZE.size
 _MOST = 65536
@@ -58,7 +59,7 @@ class CallClient:
     `find` returns the caller for a library and a packing, or None if no machine here has it. `tell` is told in a
     sentence what was refused. Whole frames are carried out one after the other. `treat` counts a call and says how it
     is to be treated: what is dropped ends the connection behind the answers before it and is not carried out, and
-    `delay_s` is how much later all answers of the last bytes come.
+    `delay_s` is how much later all answers of the last bytes come. `push` sends what comes unasked, interrupts.
     """
 
     find: Callable[[str, int], Caller | None]
@@ -66,6 +67,7 @@ class CallClient:
     trace: Trace | None = None
     now_s: Callable[[], float] = lambda: 0.0
     treat: Callable[[], Treatment] = lambda: AS_USUAL
+    push: Callable[[bytes], None] = lambda _: None
     ended: bool = False
     delay_s: float = 0.0
     caller: Caller | None = None
@@ -149,6 +151,7 @@ class CallClient:
             self.ended = True
             return _WELCOME.pack(MAGIC, caller.library.version)
         self.caller = caller
+        caller.push = lambda lines: self.push(_INTERRUPT.pack(_INTERRUPT.size - _SIZE.size, 0, 0, lines))
         self.number = 0 if self.trace is None else self.trace.next_client()
         return _WELCOME.pack(MAGIC, 0)
 
