@@ -73,8 +73,6 @@ def select_tool(block: BlockContext) -> None:
         block.items.append(_turn_turret(block, word))
     else:
         block.after.selected_tool = whole_number(word, "a tool number", block.problem)
-        if "unknown tools" in block.dialect.refuses:
-            tool_data(block, block.after.selected_tool)
 
 
 def functions(block: BlockContext) -> None:
