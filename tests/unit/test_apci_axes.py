@@ -321,11 +321,17 @@ def lift(pc: Pc, number: int) -> Any:
     pcap.wrModeReg(0x61000000 | number << 26)
 
 
+def take_away(pc: Pc, *numbers: int) -> None:
+    """Take some inputs off again."""
+    for number in numbers:
+        pc.board.set_input(number, False)
+
+
 BOARD["bits"] = [
     (5, lambda pc: pcap.wrdigo(pcap.TSRP(an=2, digo=0x5A))),
     (5, lambda pc: pcap.wrdigo(pcap.TSRP(an=1, digo=-0x5B))),
     *((5, lambda pc, number=number: lift(pc, number)) for number in range(1, 19)),
-    (5, lambda pc: [pc.board.set_input(number, False) for number in (2, 7, 11, 16)]),
+    (5, lambda pc: take_away(pc, 2, 7, 11, 16)),
 ]
 BIT_ROWS = (
     *(f"digi.{bit}" for bit in range(16)),

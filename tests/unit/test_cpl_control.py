@@ -168,9 +168,7 @@ def test_a_loop_that_does_something_goes_on_up_to_the_limit(root: Root) -> None:
         ("20 C%=CLOCK", "0.4"),
     ],
 )
-def test_a_loop_that_writes_and_asks_nobody_has_a_fifth_of_the_limit(
-    root: Root, loop: str, limit: str
-) -> None:
+def test_a_loop_that_writes_and_asks_nobody_has_half_of_the_limit(root: Root, loop: str, limit: str) -> None:
     text = f'10 OPENW(1,"out") : N%=0\n{loop}\n30 N%=N%+1\n40 GOTO 20'
     alarms = runner.run(text, MILL, "bosch", root=root.folder, check=False, loop_limit_s=0.4).alarms
     assert [alarm.text for alarm in alarms] == [

@@ -218,8 +218,8 @@ def test_carry_is_the_carry_of_a_sum_and_the_borrow_of_a_comparison(
         assert [card.read_raw(at, 0, 2) for at in (317, 321, 323, 325)] == counts
 
 
-CONDITIONS = ("Zero", "NotZero", "Great", "GreatEqu", "Little", "Carry", "NotCarry")
-ALL_CONDITIONS = (*(f"IF_{name}" for name in CONDITIONS), *(f"Edge_{name}" for name in CONDITIONS))
+NAMES = ("Zero", "NotZero", "Great", "GreatEqu", "Little", "Carry", "NotCarry")
+ALL_CONDITIONS = (*(f"IF_{name}" for name in NAMES), *(f"Edge_{name}" for name in NAMES))
 # A command, two numbers, and which of the conditions hold for its result.
 AT_THE_ENDS = (
     ("CMP32", 2**31 - 1, -1, "NotZero Great GreatEqu Carry"),
@@ -268,13 +268,13 @@ def test_conditions_at_the_ends_of_the_numbers() -> None:
             card.write_raw(cell, 0, 0, width)
         card.write_raw(first, a, 0, words)
         card.advance(1)
-        wanted = sum(1 << k for k, name in enumerate(CONDITIONS) if name in holds.split())
+        wanted = sum(1 << k for k, name in enumerate(NAMES) if name in holds.split())
         assert card.read_raw(R32, 0, 2) == wanted, (command, a, b)
         edges = card.read_raw(R16, 0)
         assert edges & ~wanted == 0
         if command.startswith("CMP"):  # two equal numbers before, or a greater first one
             held = "Zero GreatEqu NotCarry" if "NotZero" in holds else "NotZero Great GreatEqu NotCarry"
-            assert edges == wanted & ~sum(1 << k for k, name in enumerate(CONDITIONS) if name in held.split())
+            assert edges == wanted & ~sum(1 << k for k, name in enumerate(NAMES) if name in held.split())
 
 
 @pytest.mark.covers("imc.concept.event_space")

@@ -201,4 +201,4 @@ def test_warming_up_makes_every_entry_of_stock_ready() -> None:
     _JOBS["stock"](lambda name, part: None)
     of_stock = {name: each for name, each in entries() if name.startswith("polycnc.stock.")}
     assert len(of_stock) >= 3
-    assert [name for name, each in of_stock.items() if not each.signatures] == []
+    assert [name for name, each in of_stock.items() if not each.compiled().signatures] == []

@@ -30,6 +30,7 @@ class Slow:
     busy: bool = False
     clock: Clock = field(default_factory=lambda: Clock(CYCLE_S))
     passed: list[int] = field(default_factory=list)
+    is_followed: bool = True
 
     def advance(self, cycles: int, *, is_enough: Callable[[], bool] | None = None) -> int:
         self.wall.time_s += COST_S

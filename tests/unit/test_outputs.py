@@ -7,6 +7,7 @@ import os
 import subprocess
 import sys
 import threading
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
@@ -272,7 +273,8 @@ def test_a_full_disk_is_told_with_the_file(special: bool, here: Path) -> None:
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="needs the device of a full disk")
 def test_a_log_on_a_full_disk_is_told_with_the_file() -> None:
     log = Log(Path("/dev/full"))
-    for act in (lambda: log.write("ready", port=8193), log.close):
+    acts: list[Callable[[], None]] = [lambda: log.write("ready", port=8193), log.close]
+    for act in acts:
         with pytest.raises(OSError, match="No space left") as caught:
             act()
         assert caught.value.filename == "/dev/full"
