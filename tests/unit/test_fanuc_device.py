@@ -18,6 +18,7 @@ from polycnc.cnc import ControlError, ControlEvent, Emergency, Mode, Refusal, Ru
 from polycnc.controllers.fanuc import PowerMate, PowerMateMode, fwlib
 from polycnc.controllers.fanuc.fwlib import EW
 from polycnc.errors import UsageError
+from support.often import share
 from support.power_mate import OK, attached, moved, registered, running
 
 MODES = {
@@ -443,7 +444,7 @@ WRITER = """
 def test_a_killed_process_loses_nothing_acknowledged(tmp_path: Path) -> None:
     file = tmp_path / "power-mate.db"
     acknowledged = 0
-    for rounds in range(3):
+    for rounds in range(share(3)):
         with subprocess.Popen(
             [sys.executable, "-c", textwrap.dedent(WRITER), str(file)],
             stdout=subprocess.PIPE,

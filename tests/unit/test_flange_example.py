@@ -75,9 +75,8 @@ def test_the_thread_is_a_helix_of_its_pitch(measured: tuple[RunResult, Path]) ->
     assert (angle[-1] - angle[0]) / (2 * math.pi) == pytest.approx(9 / 1.5, abs=0.02)  # the ends are cut off
 
 
-def test_the_next_run_begins_with_the_zero_that_was_measured(tmp_path: Path) -> None:
-    run(EXAMPLES / "flange.npg", EXAMPLES / "flange.toml", root=tmp_path)
-    plain = tmp_path / "plain.npg"
+def test_the_next_run_begins_with_the_zero_that_was_measured(measured: tuple[RunResult, Path]) -> None:
+    plain = measured[1] / "plain.npg"
     plain.write_text("N10 G54 H5\nN20 G1 X1 Y2 Z3 F1000\nN30 M30\n")
     found = run(plain, EXAMPLES / "flange.toml").end_position_mm
     wanted = {"X": CENTER[0] + 1, "Y": CENTER[1] + 2, "Z": FACE + LENGTH + 3}

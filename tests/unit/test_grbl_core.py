@@ -61,12 +61,12 @@ def test_a_wrong_line_has_its_number_and_stops_nothing() -> None:
     bench = Bench()
     bench.send(UNIT + "G10 L20 P2 X0\n", 100)
     for place, (line, number) in enumerate(WRONG):
-        target = 30.0 + 10.0 * (place % 2)
+        target = 30.0 + 7.5 * (place % 2)
         bench.send(f"G53 G0 X{target}\n", 10)
         answers = [each for each in bench.send(line + "\n", 10) if not each.startswith("[MSG")]
         assert (line, answers) == (line, [f"error:{number}"])
         assert (line, bench.state()) == (line, "Run")
-        bench.send("", 400)
+        bench.send("", 300)
         assert (line, bench.state(), bench.x()) == (line, "Idle", target)
 
 

@@ -84,7 +84,7 @@ def test_a_probe_tells_the_program_where_it_was_met(tmp_path: Path) -> None:
     """The contact is that of the machine, less the shift of G92; the way back ends where the probe comes free."""
     program = (
         "G92 X2\nG38.2 X40 F1200\n#1=#5061\n#2=#5070\nG38.4 X-3 F240\n#3=#5061\n"
-        "G38.3 Y60\nG92.1\nG0 X#1 Y#2 Z#3\nG91 G0 Z[#5070 + 0.5]"
+        "G38.3 Y60 F9000\nG92.1\nG0 X#1 Y#2 Z#3\nG91 G0 Z[#5070 + 0.5]"
     )
     end = probing(tmp_path, program).end_position_mm
     assert end["X"] == pytest.approx(22.25, abs=1e-9)

@@ -702,8 +702,7 @@ TAPPED = (
 )
 
 
-@pytest.mark.parametrize("name", ["bosch-pnc", "bosch-pnc-cpl"])
-@pytest.mark.parametrize(("sense", "turn"), [("CLW", 1), ("CCLW", -1)])
+@pytest.mark.parametrize(("name", "sense", "turn"), [("bosch-pnc", "CLW", 1), ("bosch-pnc-cpl", "CCLW", -1)])
 def test_a_posted_thread_is_cut_with_the_turn_and_left_against_it(
     tmp_path: Path, name: str, sense: str, turn: int
 ) -> None:

@@ -404,7 +404,7 @@ def test_a_channel_in_wait_says_so_and_wakes_who_asks_with_the_version(two: Two,
         f"{20 + place} #E%=MCODS(87,2,V,W%,1) : #W{place}%=W%(1) : #T{place}%=CLOCK\n" for place in range(3)
     )
     two.start(program)
-    two.pnc.advance(1000)
+    two.pnc.advance(400)
     found = two.pnc.variables(1)
     assert [found[f"#W{place}%"] for place in range(3)] == [0, 4096, 0]
     times = [int(str(found[f"#T{place}%"])) for place in range(3)]

@@ -574,14 +574,14 @@ def test_a_coordinate_is_measured(measuring: Cell) -> None:
 @pytest.mark.covers("cpl.ex.2307", "cpl.nc.MSG_text", "cpl.SD.9")
 def test_no_contact_is_told_and_no_position_is_given(measuring: Cell) -> None:
     blocks = (
-        "N1 G1 X5 F900\nN4 G75 X90\n60 IF SD(9) = 1 THEN\nN7 (MSG, PROBE WAS NOT DEFLECTED)\n80 GOTO .ERROR\n90 ELSE\n"
+        "N1 G1 X5 F9000\nN4 G75 X90\n60 IF SD(9) = 1 THEN\nN7 (MSG, PROBE WAS NOT DEFLECTED)\n80 GOTO .ERROR\n90 ELSE\n"
         "100 XMEAS = PPOS(1)\n110 ENDIF\n120 .ERROR"
     )
     assert measuring.values(blocks, "SD(9)", "CPOS(1)") == [1, 90]
     assert [message.text.strip() for message in measuring.last.messages] == ["MSG: PROBE WAS NOT DEFLECTED"]
     for call in ("PPOS(1)", "PROBE(1)", "CPROBE(1)"):
-        assert measuring.error(f"N4 G75 X90 F900\n1 A={call}") == "2: NO PROBE POSITION"
-        assert measuring.error(f"N4 G1 X9 F900\n1 A={call}") == "2: NO PROBE POSITION"
+        assert measuring.error(f"N4 G75 X90 F9000\n1 A={call}") == "2: NO PROBE POSITION"
+        assert measuring.error(f"N4 G1 X9 F9000\n1 A={call}") == "2: NO PROBE POSITION"
 
 
 @pytest.mark.covers("cpl.PPOS", "cpl.PROBE")
