@@ -21,6 +21,29 @@ from polycnc.servers.calls import build_library, library_of, target_here, write_
 _AXES = 3
 _LENGTH = 4 + 4 * _AXES
 _AT_ONCE = 10  # calls of a batch: few enough that some batches are not interrupted
+_BATCHES = """\
+#define _POSIX_C_SOURCE 200809L
+#include <stdio.h>
+#include <time.h>
+#include "fwlib32.h"
+int main(void)
+{
+    unsigned short handle;
+    ODBAXIS at;
+    char line[8];
+    struct timespec from, to;
+    int k, code = cnc_allclibhndl(&handle);
+    while (fgets(line, sizeof line, stdin)) {
+        clock_gettime(CLOCK_MONOTONIC, &from);
+        for (k = 0; k < AT_ONCE; k++)
+            code |= cnc_absolute(handle, ALL_AXES, 16, &at);
+        clock_gettime(CLOCK_MONOTONIC, &to);
+        printf("%.9f\\n", code ? -1.0 : to.tv_sec - from.tv_sec + 1e-9 * (to.tv_nsec - from.tv_nsec));
+        fflush(stdout);
+    }
+    return code | cnc_freelibhndl(handle);
+}
+"""
 _CLIENT = """\
 #include <stdio.h>
 #include "fwlib32.h"
@@ -35,15 +58,25 @@ int main(void)
 """
 
 
-def _best_s(call: Callable[[], object], batches: int) -> float:
-    """Return the time of a call in the quickest batch."""
-    best_s = float("inf")
+def _best_s(batches: int, *ways: Callable[[], float]) -> list[float]:
+    """Return the time of a call in each way's quickest batch; batches take turns, so that all meet the same load."""
+    best_s = [float("inf")] * len(ways)
     for _ in range(batches):
+        for k, batch_s in enumerate(ways):
+            best_s[k] = min(best_s[k], batch_s() / _AT_ONCE)
+    return best_s
+
+
+def _timed(call: Callable[[], object]) -> Callable[[], float]:
+    """Return what does a batch of calls and returns how long it took (s)."""
+
+    def batch_s() -> float:
         begin = time.perf_counter()
         for _ in range(_AT_ONCE):
             call()
-        best_s = min(best_s, (time.perf_counter() - begin) / _AT_ONCE)
-    return best_s
+        return time.perf_counter() - begin
+
+    return batch_s
 
 
 def _facade(clock: Way | None = None) -> Callable[[], object]:
@@ -59,15 +92,15 @@ def _in_process(batches: int) -> Figure:
         folder, kind = Path(name), library_of("fanuc")
         write_library(kind, folder, in_process=True)
         built = build_library(kind, folder, target_here(), in_process=True)
-        call, facade = _over_socket(ctypes.CDLL(str(built))), _facade(Poll(1))
-    inside_s, python_s = _best_s(call, batches), _best_s(facade, batches)
+        call, facade = _from_python(ctypes.CDLL(str(built))), _facade(Poll(1))
+    inside_s, python_s = _best_s(batches, _timed(call), _timed(facade))
     return at_most(
         "C library: a call in process, as ratio to Python", inside_s / python_s, "", 1.3,
         f"cnc_absolute and a cycle: {inside_s * 1e6:.0f} us, in Python {python_s * 1e6:.0f} us",
     )  # fmt: skip
 
 
-def _over_socket(library: Any) -> Callable[[], object]:
+def _from_python(library: Any) -> Callable[[], object]:
     handle, at = ctypes.c_ushort(), fwlib.ODBAXIS()
     if library.cnc_allclibhndl(ctypes.byref(handle)):
         raise RuntimeError("the server is not found")
@@ -98,17 +131,10 @@ def figures(quick: bool) -> list[Figure]:
 
 
 def _figures(quick: bool, folder: Path, built: Path, server: int) -> list[Figure]:
-    batches = 200 if quick else 2_000
-    call, facade = _over_socket(ctypes.CDLL(str(built))), _facade()
-    over_s, python_s = _best_s(call, batches), _best_s(facade, batches)
+    batches = 400 if quick else 2_000
+    over_s, python_s = _over_socket(folder, batches)
     size = at_most("C library: size of libfwlib32", built.stat().st_size / 1e3, "kB", 200)
-    source = folder / "client.c"
-    source.write_text(_CLIENT)
-    client = folder / "client"
-    subprocess.run(
-        ["cc", "-o", client, source, "-I", folder, "-L", folder, "-lfwlib32", f"-Wl,-rpath,{folder}"],
-        check=True,
-    )
+    client = _program(folder, "client", _CLIENT)
     count = 50 if quick else 1_000
     first_ms = min(_run_ms(client) for _ in range(20))
     before_kb, files = _held_kb(server), _files(server)
@@ -125,6 +151,35 @@ def _figures(quick: bool, folder: Path, built: Path, server: int) -> list[Figure
         at_most(f"C library: memory after {count} programs", _held_kb(server) - before_kb, "kB more", 2_000),
         at_most(f"C library: open files after {count} programs", _files(server) - files, "more", 0),
     ]  # fmt: skip
+
+
+def _over_socket(folder: Path, batches: int) -> list[float]:
+    """Return the time of a call of a C program, and of the same one in Python (s)."""
+    program = _program(folder, "batches", _BATCHES)
+    with subprocess.Popen([program], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True) as ran:
+        assert ran.stdin is not None
+        assert ran.stdout is not None
+        to, said = ran.stdin, ran.stdout
+
+        def batch_s() -> float:
+            to.write("go\n")
+            to.flush()
+            lasted_s = float(said.readline())
+            if lasted_s < 0.0:
+                raise RuntimeError("a call was refused")
+            return lasted_s
+
+        return _best_s(batches, batch_s, _timed(_facade()))
+
+
+def _program(folder: Path, name: str, text: str) -> Path:
+    source, made = folder / f"{name}.c", folder / name
+    source.write_text(text)
+    subprocess.run(
+        ["cc", f"-DAT_ONCE={_AT_ONCE}", "-O2", "-o", made, source, "-I", folder, "-L", folder, "-lfwlib32",
+         f"-Wl,-rpath,{folder}"], check=True,
+    )  # fmt: skip
+    return made
 
 
 def _run_ms(client: Path) -> float:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 import http.client
 import os
 import subprocess
@@ -24,7 +25,7 @@ REQUESTS = {
 class Served:
     """A process that serves a machine, and a client."""
 
-    def __init__(self, *arguments: str) -> None:
+    def __init__(self, *arguments: str, door: str = "mtconnect") -> None:
         self.process = subprocess.Popen(
             [
                 sys.executable,
@@ -34,7 +35,7 @@ class Served:
                 "--plain",
                 "mill3",
                 "--doors",
-                "mtconnect=0",
+                f"{door}=0",
                 *arguments,
             ],
             stdout=subprocess.PIPE,
@@ -42,7 +43,8 @@ class Served:
             text=True,
         )
         assert self.process.stdout is not None
-        self.port = int(self.process.stdout.readline().strip().rpartition(":")[2])
+        self.said = self.process.stdout.readline().strip()
+        self.port = int(self.said.rpartition(":")[2])
         self.client = http.client.HTTPConnection("127.0.0.1", self.port)
 
     def cpu_s(self) -> float:
@@ -71,6 +73,57 @@ def _per_second(served: Served, path: str, count: int) -> tuple[float, float]:
     return count / max(served.cpu_s() - before, 1 / TICKS), count / (time.perf_counter() - begin)
 
 
+class _Deaf:
+    """Counts what a subscription tells."""
+
+    count = 0
+
+    def datachange_notification(self, node: object, value: object, data: object) -> None:
+        self.count += 1
+
+
+async def _monitored(url: str, served: Served, for_s: float) -> tuple[float, int]:
+    """Monitor 100 variables at 10 Hz; return the share of a core that the server takes (%), and the notifications."""
+    from asyncua import Client, ua
+
+    axis = [f"machine/CncAxisList/{each}" for each in "XYZ"]
+    paths = [
+        f"{at}/{name}"
+        for at in axis
+        for name in ("PosDirect", "PosIndirect", "ActStatus", "ZeroOffset", "ActLoad")
+    ]
+    paths += [f"{at}/{name}/{part}" for at in axis for name in ("PosDirect", "PosIndirect")
+              for part in ("ActPos", "CmdPos", "RemDist")]  # fmt: skip
+    channel = "machine/CncChannelList/Channel1"
+    paths += [
+        f"{channel}/{name}" for name in ("ActFeedrate", "CmdFeedrate", "ActProgramLine", "ActProgramBlock")
+    ]
+    paths += [f"{channel}/PosTcp{system}{each}/{part}" for system in ("Bcs", "Wcs") for each in "XYZ"
+              for part in ("ActPos", "CmdPos", "RemDist")]  # fmt: skip
+    paths = (paths * 2)[:100]
+    seen = _Deaf()
+    async with Client(url, timeout=60) as client:
+        subscription = await client.create_subscription(100, seen)
+        await subscription.subscribe_data_change([client.get_node(ua.NodeId(path, 1)) for path in paths])
+        await asyncio.sleep(2.0)
+        seen.count = 0
+        before, begin = served.cpu_s(), time.perf_counter()
+        await asyncio.sleep(for_s)
+        share = (served.cpu_s() - before) / (time.perf_counter() - begin) * 100.0
+        return share, seen.count
+
+
+def _opcua(for_s: float, program: Path) -> Figure:
+    served = Served("--program", str(program), door="opcua")
+    try:
+        url = served.said.partition(" ")[2]
+        share, count = asyncio.run(_monitored(url, served, for_s))
+    finally:
+        served.end()
+    note = f"{count / for_s:,.0f} notifications/s; the machine runs a program"
+    return at_most("OPC UA, 100 monitored items at 10 Hz: processor", share, "% of a core", 5.0, note)
+
+
 def figures(quick: bool) -> list[Figure]:
     """Measure and return the figures."""
     made = []
@@ -89,6 +142,7 @@ def figures(quick: bool) -> list[Figure]:
                 if path == "/current"
                 else Figure(figure, by_processor, unit, note=note)
             )
+        made.append(_opcua(3.0 if quick else 10.0, program))
     finally:
         served.end()
         program.unlink()

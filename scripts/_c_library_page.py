@@ -20,7 +20,7 @@ is C99 on sockets; nothing else of Python or polycnc is in the program's process
 | names | exported as they are, without decoration, also in 32-bit Windows libraries, whose functions are `stdcall` |
 | structures | packed as the manuals have them; for programs made with later headers of `fwlib32`, which pack to 4 bytes, the library is written with `--packing 4`. A length counts the program's bytes: ranges of macro variables are `8 + 8 * n` instead of `6 + 6 * n` |
 | clients | one connection is one program of the library, with its own handles; calls of several threads are carried out one after the other |
-| time | passes at the rate of the served machine |
+| time | passes at the rate of the served machine; calls that follow each other closely find it as it was up to 5 ms before |
 | waiting | 10 s for an answer; with `cnc_allclibhndl3` as long as the program says |
 | null pointers | refused with a code; nothing is carried out |
 | refused calls | write nothing; others write never more than the length that the program passes, or one structure |
@@ -83,6 +83,18 @@ lists those that answer otherwise; status 1 if there are any.
 place for. With a record of the manual they do nothing. A program that wants them passes the first part of a `TSRPX`, which
 `MCUG3_EXTEND(&record)` has marked in its scratch words: then `aux`, `lp`, `dv` and `sdec` of that are read and written.
 
+## Interrupts of a board
+
+`MCUG3_SetBoardIntRoutine` has a thread of the library wait on a connection of its own, and call the routine with 1 when the selected
+board interrupts the PC, about 10 ms later at most. The routine begins when no call is being carried out; calls that come meanwhile
+wait for its end, for a second at most, and what the routine itself calls does not wait. `MCUG3_ResetBoardIntRoutine` returns when the
+routine does not run any more. The routine stays installed when the server is lost: it is called again after the next successful
+`InitMcuSystem`, `InitMcuSystem2` or `InitMcuSystem3`. A program may end without removing it; a child of `fork` has none. With
+`--in-process` both functions answer 1 and do nothing.
+
+On the wire the library calls `MCUG3_SetBoardIntRoutine` with 0, which answers the number of the selected board, and on a second connection
+with that number plus 1. Interrupts come there unasked: length 8, number 0, serial number 0, the bits of the lines (4 bytes).
+
 ## What a program needs
 
 `polycnc clib KIND --missing PROGRAM` reads the import tables of an .exe or a DLL (32 and 64 bits, delayed imports too), or
@@ -93,8 +105,7 @@ refused.
 
 ## What there is not
 
-No routine
-of the program that an interrupt calls, no booting of a served board. Functions that no manual of these systems has are not
+No booting of a served board: `BootFile` answers 202, as of a board that cannot be reached at its addresses. Functions that no manual of these systems has are not
 exported: the loader names them.
 """
 
@@ -123,7 +134,11 @@ def _library(library: CLibrary) -> str:
         f"| a pointer is null, or a call larger than a frame | {library.null:d} |",
         f"| library and server do not belong together | {library.version:d} |",
     ]
-    lines += [f"| any of these, in `{name}` | {code:d} |" for name, code in sorted(library.failures.items())]
+    lines += [
+        f"| any of these, in `{name}` | {code:d} |"
+        for name, code in sorted(library.failures.items())
+        if name not in library.left_out
+    ]
     lines += ["", "How many bytes lie behind a pointer, where it is not one structure or number:", ""]
     lines += ["| function | argument | bytes |", "| --- | --- | --- |", *_rows(library)]
     if library.left_out:

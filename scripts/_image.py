@@ -1,4 +1,4 @@
-"""Do the steps of the Dockerfile in a folder of one's own, and run what they made as an ordinary user, read-only."""
+"""Do the steps of the Dockerfile in a folder, and run what they made as a user who may write to its `/work` alone."""
 
 from __future__ import annotations
 
@@ -12,6 +12,7 @@ import tempfile
 import time
 from collections.abc import Iterator
 from pathlib import Path
+from urllib.request import urlopen
 
 REPOSITORY = Path(__file__).resolve().parents[1]
 NOBODY = 65534
@@ -43,6 +44,7 @@ class Image:
         }
         self.user: int | None = None
         self.entry: list[str] = []
+        self.ports: list[str] = []
 
     def do(self, word: str, rest: str) -> None:
         """Carry out one instruction."""
@@ -59,6 +61,8 @@ class Image:
                 shutil.copytree(REPOSITORY / source, self.moved(target), ignore=LEFT_OUT)
             case "RUN":
                 subprocess.run(["/bin/sh", "-ec", self.moved(rest)], env=self.environment, check=True)
+            case "EXPOSE":
+                self.ports = rest.split()
             case "USER":
                 self.user = int(rest.partition(":")[0])
             case "WORKDIR":
@@ -80,26 +84,45 @@ class Image:
             text = text.replace(place, f"{self.root}{place}")
         return text
 
-    def run(self, *arguments: str) -> tuple[str, str, float]:
-        """Run the entry point as the user of the image; return what it said, and how long it took."""
+    def _start(self, *arguments: str) -> subprocess.Popen[str]:
+        """Start the entry point as the user of the image."""
         user = self.user if os.geteuid() == 0 and self.reachable else None
-        begin = time.monotonic()
-        done = subprocess.run(
+        return subprocess.Popen(
             [str(self.root / "venv" / "bin" / self.entry[0]), *arguments],
             env=self.environment,
             cwd=self.root / "work",
             user=user,
             group=user,
             extra_groups=None if user is None else [],
-            capture_output=True,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE,
             text=True,
-            check=False,
         )
-        if done.returncode:
-            raise SystemExit(
-                f"{' '.join(arguments)}: exit status {done.returncode}\n{done.stdout}{done.stderr}"
-            )
-        return done.stdout, done.stderr, time.monotonic() - begin
+
+    def serve(self, *arguments: str) -> float:
+        """Serve a machine by HTTP until it answers; return how long that took, in s."""
+        begin = time.monotonic()
+        process = self._start("serve", *arguments, "--doors", "http=0")
+        assert process.stdout is not None
+        url = process.stdout.readline().partition(" ")[2].strip()
+        try:
+            with urlopen(f"{url}/api/machines/machine/status") as answer:
+                answer.read()
+        finally:
+            process.terminate()
+            said = process.communicate()[1]
+        if said:
+            raise SystemExit(f"serve {' '.join(arguments)} is not quiet:\n{said}")
+        return time.monotonic() - begin
+
+    def run(self, *arguments: str) -> tuple[str, str, float]:
+        """Run the entry point as the user of the image; return what it said, and how long it took."""
+        begin = time.monotonic()
+        process = self._start(*arguments)
+        stdout, stderr = process.communicate()
+        if process.returncode:
+            raise SystemExit(f"{' '.join(arguments)}: exit status {process.returncode}\n{stdout}{stderr}")
+        return stdout, stderr, time.monotonic() - begin
 
 
 def main() -> None:
@@ -112,6 +135,7 @@ def main() -> None:
         image.do(word, rest)
     shutil.copy(REPOSITORY / "examples" / "bracket.nc", root / "work")
     subprocess.run(["chmod", "-R", "a-w", str(root)], check=True)
+    (root / "work").chmod(0o1777)
     image.environment["POLYCNC_COMPILE_AT_ONCE"] = "1"  # so small a program would not be compiled anyway
     said, remarks, seconds = image.run("run", "bracket.nc")
     print(said, end="")
@@ -119,6 +143,8 @@ def main() -> None:
         raise SystemExit(f"the first run is not warm or not quiet:\n{remarks}")
     print(f"warm from the start: {seconds:.1f} s")
     print(image.run("batch", "bracket.nc", "--jobs", "1")[0], end="")
+    for kind in (["--plain", "mill3"], ["--fanuc"], ["--bosch"], ["--apci"], ["--imc"]):
+        print(f"serves {kind[0]} after {image.serve(*kind, '--memory', f'kept{kind[0]}.sqlite'):.1f} s")
     if os.geteuid() == 0 and not image.reachable:
         print(
             f"run as root: {sys.executable} lies where no other user may look (POLYCNC_PYTHON names another)"

@@ -6,6 +6,7 @@ Classes that stand for a usual Python mistake inherit from that one too, so ``ex
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 _EXCERPT_WIDTH = 100
@@ -119,3 +120,11 @@ def shown(value: object, most: int = 60) -> str:
     except ValueError:  # Python writes no whole number of more than 4,300 digits
         return "a number without end"
     return text if len(text) <= most else f"{text[: most - 3]}..."
+
+
+def did_you_mean(name: str, known: Iterable[str]) -> str:
+    """Return the beginning of a hint that names what a name comes nearest to; empty where nothing is near."""
+    from difflib import get_close_matches
+
+    close = get_close_matches(name[:40], list(known), n=1)
+    return f"Did you mean '{close[0]}'? " if close else ""

@@ -41,7 +41,7 @@ def campaign(number: int, count: int, seconds: int, *names: str, compiled: bool 
 
 
 def test_a_short_campaign() -> None:
-    cases = campaign(20, 100, 8)
+    cases = campaign(20, 50, 8)
     assert set(cases) == {target.name for target in TARGETS}
     assert all(cases.values())
 

@@ -12,6 +12,7 @@ import pytest
 from polycnc import runner
 from polycnc.machine import parse_machine, preset_text
 from polycnc.servers.scenarios import load_script
+from support.often import often
 
 MOST = 1.2
 TRIES = 4
@@ -58,7 +59,7 @@ def test_the_time_of_a_program_grows_with_its_length(name: str) -> None:
         assert runner.run(text, None, "fanuc", check=False).ok
         return time.process_time() - before
 
-    _assert_linear(seconds, 500)
+    _assert_linear(seconds, 250)
 
 
 def test_the_power_of_a_laser_in_each_block_costs_little_and_grows_with_the_program() -> None:
@@ -73,12 +74,16 @@ def test_the_power_of_a_laser_in_each_block_costs_little_and_grows_with_the_prog
         assert runner.run(program, config, "grbl", check=False).ok
         return time.process_time() - before
 
-    _assert_linear(seconds, 5_000)
-    words, plain = (min(seconds(20_000, word) for _ in range(TRIES)) for word in (" S{}", ""))
-    assert words < 2.0 * plain
+    _assert_linear(seconds, 2_500)
+    words = plain = math.inf
+    for _ in range(TRIES):
+        words, plain = min(words, seconds(10_000)), min(plain, seconds(10_000, ""))
+        if words < 2.0 * plain:
+            return
+    raise AssertionError(f"with words {words:.3f} s, without {plain:.3f} s")
 
 
-@pytest.mark.parametrize("blocks", [1_000_000, 10_000_000])
+@pytest.mark.parametrize("blocks", often([1_000_000, 10_000_000], 1))
 def test_a_window_wider_than_the_program_costs_nothing(blocks: int) -> None:
     """Braking takes longer than the queue is: each block would look through all that is known."""
     text = preset_text("mill3").replace("[[axis]]", f"[path]\nlook_ahead_blocks = {blocks}\n[[axis]]", 1)

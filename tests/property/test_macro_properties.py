@@ -14,10 +14,11 @@ from polycnc.kernel import drop_queue
 from polycnc.machine import Machine, load_machine
 from polycnc.nc import Channel, ProgramText, load_dialect
 from polycnc.nc.macro import MacroLanguage
+from support.often import share
 from support.rs274 import COMMAND, call
 
 DIFFERENTIAL = 60
-FUZZED = 1000
+FUZZED = share(1000)
 _FEED = re.compile(r"STRAIGHT_FEED\((-?[0-9.]+),")
 
 

@@ -93,7 +93,7 @@ def test_a_starved_run_rests_on_the_path_and_keeps_every_limit(seed: int, config
     found: list[list[float]] = []
     first, *more = chunks(program, rng)
     put(run, text, first)
-    while not run.starved:
+    while not run.reading.starved:
         found += trace(run, 10)
     for piece in more:
         put(run, text, piece)
@@ -135,7 +135,7 @@ def test_time_cut_elsewhere_makes_no_difference(seed: int, config: MachineConfig
             left = cycles
             while left and run.active:
                 left -= run.advance(min(cut, left))
-            row.append((run.machine.state.setpoint.tolist(), run.reading.tag, run.starved))
+            row.append((run.machine.state.setpoint.tolist(), run.reading.tag, run.reading.starved))
         while run.active:
             run.advance(cut if cut > 1 else 50)
         ends.append((row, run.machine.clock.cycles if cut != 1 else None, run.machine.setpoints))

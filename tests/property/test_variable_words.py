@@ -14,6 +14,7 @@ from polycnc.kernel import drop_queue
 from polycnc.machine import Machine, Snapshot, load_machine
 from polycnc.nc import Channel, ProgramText, load_dialect
 from polycnc.nc.macro import MacroCalls, MacroLanguage
+from support.often import often
 from support.programs import FIVE, listing, prepare
 
 _PROGRAMS = 60
@@ -85,7 +86,7 @@ def prepared(program: str, *, ordinary_blocks: float = 0) -> tuple[Channel, list
     return channel, found
 
 
-@pytest.mark.parametrize("seed", range(_PROGRAMS))
+@pytest.mark.parametrize("seed", often(range(_PROGRAMS), 25))
 def test_a_variable_behind_a_letter_means_what_it_means_in_brackets(seed: int) -> None:
     program = macro_program(random.Random(seed))
     here, there = as_words(program), as_statements(program)
@@ -104,7 +105,7 @@ def line_of(error: ProgramError) -> int | None:
     return None if error.position is None else error.position.line
 
 
-@pytest.mark.parametrize("seed", range(20))
+@pytest.mark.parametrize("seed", often(range(20), 8))
 def test_the_compiled_kernel_and_the_interpreter_give_variables_the_same_meaning(seed: int) -> None:
     program = as_words(macro_program(random.Random(1000 + seed), 60))
     compiled, blocks = prepared(program)
@@ -113,7 +114,7 @@ def test_the_compiled_kernel_and_the_interpreter_give_variables_the_same_meaning
     assert blocks == others
 
 
-@pytest.mark.parametrize("seed", range(10))
+@pytest.mark.parametrize("seed", often(range(10), 5))
 def test_modal_calls_get_the_same_words(seed: int) -> None:
     chance = random.Random(seed)
     code = chance.choice(("G66", "G66.1"))

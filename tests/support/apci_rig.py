@@ -71,7 +71,7 @@ def scans_for(duration_s: float) -> int:
 
 @functools.cache
 def integrated(
-    distance: float, first: float, top: float, last: float, up: float, down: float, step_s: float = 2e-6
+    distance: float, first: float, top: float, last: float, up: float, down: float, step_s: float = 1e-5
 ) -> tuple[Floats, Floats, Floats]:
     """Return times, positions and velocities of a profile, integrated in small steps from the manual's words.
 

@@ -36,3 +36,20 @@ def browser() -> Iterator[Any]:
             yield running
         finally:
             running.close()
+
+
+_DRAWS_NOTHING = """
+for (const name of ['drawArrays', 'drawElements', 'drawArraysInstanced', 'drawElementsInstanced'])
+  WebGL2RenderingContext.prototype[name] = () => {};
+"""
+
+
+def new_page(running: Any, *, draws: bool = False, **settings: Any) -> Any:
+    """Return a new page; without `draws` nothing is drawn in its three-dimensional pictures.
+
+    Without a graphics card a picture costs ten times what the page does for it, and few tests look at pictures.
+    """
+    page = running.new_page(**{"viewport": {"width": 1280, "height": 800}, **settings})
+    if not draws:
+        page.add_init_script(_DRAWS_NOTHING)
+    return page

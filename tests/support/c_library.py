@@ -73,7 +73,7 @@ class Door:
     ) -> None:
         self._ready = threading.Event()
         self._machines, self._focas, self._running, self._port = machines, focas, running, port
-        self._loop: asyncio.AbstractEventLoop | None = None
+        self.loop: asyncio.AbstractEventLoop | None = None
         self._end: asyncio.Event | None = None
         self.devices: Sequence[Device[Any]] = ()
         self.place = self.first_place = ""
@@ -83,7 +83,7 @@ class Door:
         assert self._ready.wait(60)
 
     async def _serve(self) -> None:
-        self._loop, self._end = asyncio.get_running_loop(), asyncio.Event()
+        self.loop, self._end = asyncio.get_running_loop(), asyncio.Event()
         at = Wanted(port=0)
         own = ((DOORS["focas"], at),) if self._focas else ()
         wanted = [MachineWanted(kind, machinery, doors=own) for kind, machinery in self._machines]
@@ -103,22 +103,22 @@ class Door:
 
     def clients(self) -> int:
         """Return how many clients are there, once all that has come before has been looked at."""
-        assert self._loop is not None
+        assert self.loop is not None
         assert isinstance(self._door, CallsServer)
 
         async def look() -> None:
             for _ in range(200):
                 await asyncio.sleep(0)  # one look at all sockets
 
-        asyncio.run_coroutine_threadsafe(look(), self._loop).result(20)
+        asyncio.run_coroutine_threadsafe(look(), self.loop).result(20)
         return len(self._door.lines)
 
     def close(self) -> None:
         """End it, and every connection."""
-        assert self._loop is not None
+        assert self.loop is not None
         assert self._end is not None
         with suppress(RuntimeError):
-            self._loop.call_soon_threadsafe(self._end.set)
+            self.loop.call_soon_threadsafe(self._end.set)
         self._thread.join(20)
         assert not self._thread.is_alive()
 

@@ -83,7 +83,7 @@ def queued_steps(machine: Machine, channel: Channel) -> list[Step]:
         elif segment["flags"] & RAPID:
             steps.append(Traverse(end))
         else:
-            assert kind in (LINE, SPLINE)
+            assert kind in (LINE, SPLINE), kind
             steps.append(Feed(end, speed))
     return steps
 

@@ -21,10 +21,11 @@ TIMEOUT_S = 240.0
 def environment(**more: str) -> dict[str, str]:
     """Return the environment of a user's process: without what tests set, and 80 columns wide."""
     # One of pytest's variables is another one in every test, which would mean a server for each of them.
+    own = ("POLYCNC_OPEN_INTERNALS", "POLYCNC_COMPILE_AT_ONCE")
     kept = {
         name: value
         for name, value in os.environ.items()
-        if name != "POLYCNC_OPEN_INTERNALS" and not name.startswith("PYTEST_")
+        if name not in own and not name.startswith("PYTEST_")
     }
     return {**kept, "COLUMNS": "80", "PYTHONUTF8": "1", **more}
 
@@ -73,6 +74,24 @@ def script(path: Path, text: str, cwd: Path, **more: str) -> subprocess.Complete
     return _answered([str(path)], cwd, {"script": str(path), "text": text, "environment": more})
 
 
+def python(
+    code: str | Path, *arguments: str | Path, cwd: Path | None = None, status: int | None = 0
+) -> subprocess.CompletedProcess[str]:
+    """Let such a process become a script, or code as after `python -c`; hold it to an exit status, if there is one."""
+    words = [str(each) for each in arguments]
+    what = ["-c", code] if isinstance(code, str) else [str(code)]
+    if hasattr(os, "fork"):
+        kind = {"code": code} if isinstance(code, str) else {"script": str(code)}
+        done = _answered([*what, *words], cwd, {**kind, "arguments": words})
+    else:
+        done = subprocess.run(
+            [sys.executable, *what, *words], cwd=cwd, env=environment(), capture_output=True, text=True,
+            encoding="utf-8", timeout=TIMEOUT_S, check=False,
+        )  # fmt: skip
+    assert status is None or done.returncode == status, f"exit status {done.returncode}\n{done.stderr}"
+    return done
+
+
 def _answered(
     words: list[str], cwd: Path | None, request: dict[str, object]
 ) -> subprocess.CompletedProcess[str]:
@@ -103,7 +122,7 @@ def _server(environment: tuple[tuple[str, str], ...]) -> subprocess.Popen[str]:
     """Return the running server; another where a test has changed the environment."""
     server = subprocess.Popen(
         [sys.executable, str(Path(__file__).with_name("command_server.py"))],
-        env=dict(environment),
+        env={**dict(environment), "POLYCNC_COMPILE_AT_ONCE": "1"},
         stdin=subprocess.PIPE,
         stdout=subprocess.PIPE,
         text=True,

@@ -2,9 +2,10 @@
 
 A command still has a process, a folder and outputs of its own; what it is spared are the imports and the loading of
 compiled functions, which cost a second and its own work a few hundredths.
-A request is JSON with `folder`, `outputs` (the files for what it prints), and the `arguments` of a command, or a
-`script` with the `text` that it reads and more of an `environment`; the answer is its exit status. With `status`, a
-FIFO, the answer comes at once, and the process goes on: its number and in the end its exit status are written there.
+A request is JSON with `folder`, `outputs` (the files for what it prints), and the `arguments` of a command, or those
+of a `script` (a file) or of `code` with the `text` that it reads and more of an `environment`; the answer is its exit
+status. With `status`, a FIFO, the answer comes at once, and the process goes on: its number and in the end its exit
+status are written there.
 """
 
 from __future__ import annotations
@@ -38,9 +39,14 @@ def become(request: dict[str, Any]) -> None:
         sys.stderr = open(2, "w", encoding="utf-8", buffering=1, closefd=False)  # noqa: SIM115
     os.environ.update(request.get("environment", {}))
     try:
-        if "script" in request:
-            sys.stdin = io.StringIO(request["text"])
-            runpy.run_path(request["script"], run_name="__main__")
+        if "script" in request or "code" in request:
+            sys.stdin = io.StringIO(request.get("text", ""))
+            sys.argv = [request.get("script", "-c"), *request.get("arguments", ())]
+            if "script" in request:
+                sys.path[0] = os.path.dirname(request["script"])
+                runpy.run_path(request["script"], run_name="__main__")
+            else:
+                exec(compile(request["code"], "<string>", "exec"), {"__name__": "__main__"})
         else:
             sys.stdin = open(0, encoding="utf-8", closefd=False)  # noqa: SIM115  the old one has read ahead
             sys.argv = ["polycnc", *request["arguments"]]
@@ -89,7 +95,7 @@ def serve() -> None:
     for line in sys.stdin:
         request = json.loads(line)
         goes_on = "status" in request
-        if goes_on and not loaded:
+        if goes_on and "code" not in request and "script" not in request and not loaded:
             load_servers()
             loaded = True
         child = os.fork()

@@ -8,6 +8,7 @@ from collections.abc import Mapping
 from typing import Any
 from xml.etree import ElementTree
 
+from support.browser import new_page
 from support.mtconnect import values_of
 
 CHANNEL, SPINDLE = "machine/CncChannelList/Channel1", "machine/CncSpindleList/Spindle1"
@@ -22,6 +23,11 @@ OPCUA = {
     "ChannelState": f"{MONITORED}/ChannelState",
     "FeedOverride": f"{MONITORED}/FeedOverride",
     "Production": "Machines/machine/Production/ActiveProgram/State/CurrentState/Number",
+    "ActiveJob": "Machines/machine/Production/ActiveProgram/JobIdentifier",
+    **{f"job {name}": f"Machines/machine/Production/ProductionPlan/Job1/{name}" for name in (
+        "Identifier", "RunsPlanned", "RunsPlanned/IsValid", "RunsCompleted", "State/CurrentState/Number",
+        "ProductionPrograms/Program1/Name",
+    )},
     **{f"{axis}/{part}": f"machine/CncAxisList/{axis}/PosDirect/{part}"
        for axis in "XYZ" for part in ("ActPos", "CmdPos", "RemDist")},
 }  # fmt: skip
@@ -107,6 +113,7 @@ class Opcua:
         from asyncua import ua
         from asyncua.sync import Client
 
+        self._ua = ua
         self._client = Client(url, timeout=30)
         self._client.connect()
         self._nodes = [self._client.get_node(ua.NodeId(path, 1)) for path in OPCUA.values()]
@@ -114,6 +121,18 @@ class Opcua:
     def read(self) -> dict[str, Any]:
         """Return the variables in one read."""
         return dict(zip(OPCUA, self._client.read_values(self._nodes), strict=True))
+
+    def tools(self) -> dict[str, tuple[int, str]]:
+        """Return the tools of its list, number and name, by what each of them is called."""
+        at = "Machines/machine/Equipment/Tools"
+        found = {}
+        for child in self._client.get_node(self._ua.NodeId(at, 1)).get_children(refs=47):
+            name, number, identifier = self._client.read_values(
+                [self._client.get_node(self._ua.NodeId(f"{child.nodeid.Identifier}/{each}", 1))
+                 for each in ("Name", "ControlIdentifier1", "Identifier")]
+            )  # fmt: skip
+            found[identifier] = number, name
+        return found
 
     def close(self) -> None:
         """End the session."""
@@ -147,7 +166,7 @@ class Page:
     """The operator's page in a browser."""
 
     def __init__(self, browser: Any, url: str) -> None:
-        self._page = browser.new_page()
+        self._page = new_page(browser, device_scale_factor=0.5)
         self._page.goto(url)
         self._page.wait_for_selector("body:not(.lost)")
 

@@ -23,6 +23,8 @@ RESOLUTION_MM = 0.5e-4 * MM_PER_INCH / SCALE
 """Half of the last printed digit, of a length in inch."""
 
 _CALL = re.compile(r"^\s*\d+ N\S*\s+(\w+)\((.*)\)$", re.MULTILINE)
+_TAG = re.compile(r"\((\d+)\.(\d+)\)")
+_TAGGED = re.compile(r'"(\d+)\.(\d+)"')
 _PLANES = {"CANON_PLANE_XY": (0, 1, 2), "CANON_PLANE_YZ": (1, 2, 0), "CANON_PLANE_XZ": (2, 0, 1)}
 _FUNCTIONS = {
     "START_SPINDLE_CLOCKWISE": "M3",
@@ -32,6 +34,14 @@ _FUNCTIONS = {
     "FLOOD_ON": "M8",
     "PROGRAM_STOP": "M0",
     "OPTIONAL_PROGRAM_STOP": "M1",
+}
+_OUTPUTS = {
+    "SET_MOTION_OUTPUT_BIT": "M62 P{0}",
+    "CLEAR_MOTION_OUTPUT_BIT": "M63 P{0}",
+    "SET_AUX_OUTPUT_BIT": "M64 P{0}",
+    "CLEAR_AUX_OUTPUT_BIT": "M65 P{0}",
+    "SET_MOTION_OUTPUT_VALUE": "M67 E{0} Q{1}",
+    "SET_AUX_OUTPUT_VALUE": "M68 E{0} Q{1}",
 }
 _DIRECTIONS = {"START_SPINDLE_CLOCKWISE": 1, "START_SPINDLE_COUNTERCLOCKWISE": -1, "STOP_SPINDLE_TURNING": 0}
 _IGNORED = {
@@ -54,6 +64,10 @@ _IGNORED = {
     "ENABLE_SPEED_OVERRIDE",
     "DISABLE_SPEED_OVERRIDE",
     "FINISH",
+    "ENABLE_FEED_HOLD",
+    "DISABLE_FEED_HOLD",
+    "ENABLE_ADAPTIVE_FEED",
+    "DISABLE_ADAPTIVE_FEED",
 }
 
 
@@ -93,6 +107,39 @@ def interpret(program: str, folder: Path, *, block_delete: bool = False, tools: 
         return Answer(calls)
     message = [line for line in done.stderr.splitlines() if line != "executing"]
     return Answer(calls, message[0] if message else "?", message[-1] if message else "?")
+
+
+@dataclass(frozen=True)
+class Sequences:
+    """What rs274 made of sequences of tagged blocks: steps of each block, and what it refused first in a sequence."""
+
+    steps: dict[tuple[int, int], list[Step]]
+    refused: dict[int, tuple[int, str]]
+
+
+def interpret_tagged(program: str, folder: Path, axes: int, tools: str, least_mm: float) -> Sequences:
+    """Run rs274 once on blocks that end with a comment `(sequence.place)`; it goes on after those that it refuses."""
+    file, table = folder / "program.ngc", folder / "tools.tbl"
+    file.write_text(f"{program}\n(999999.0)\nM2\n", encoding="ascii")
+    table.write_text(tools, encoding="ascii")
+    done = call(file, "-n", "0", "-t", str(table))
+    refused: dict[int, tuple[int, str]] = {}
+    message = ""
+    for line in done.stderr.splitlines():
+        if (tag := _TAG.search(line)) is None:
+            message = line
+        elif int(tag[2]):  # the first block may refuse what the sequence before has left
+            refused.setdefault(int(tag[1]), (int(tag[2]), message))
+    canon = _Canon(axes, 1.0, least_mm, at=(0.0,) * axes)
+    steps: dict[tuple[int, int], list[Step]] = {}
+    for name, rest in _CALL.findall(done.stdout):
+        if name == "COMMENT" and (found := _TAGGED.fullmatch(rest)) is not None:
+            canon.steps = steps.setdefault((int(found[1]), int(found[2])), [])
+        elif name == "PROGRAM_END":
+            break
+        elif name != "SET_SPINDLE_MODE":
+            canon.call(name, [part.strip() for part in rest.split(",")])
+    return Sequences(steps, refused)
 
 
 @dataclass
@@ -191,6 +238,7 @@ class _Canon:
                 self.lead = 0.0
             case "RIGID_TAP":
                 start, end = self.at, self.point([*texts, "0", "0", "0"])
+                end = (*end[:3], *start[3:])
                 turn = {1: ("M4", "M3"), -1: ("M3", "M4")}[self.direction]
                 self.steps += [Feed(end, self.speed(end)), Function(turn[0])]
                 self.steps += [Feed(start, self.speed(start)), Function(turn[1])]
@@ -213,6 +261,8 @@ class _Canon:
                 self.steps.append(Function(f"M6 T{texts[0]}"))
             case "FLOOD_OFF":
                 self.steps.append(Function("M9"))
+            case _ if name in _OUTPUTS:
+                self.steps.append(Function(_OUTPUTS[name].format(*texts)))
             case _:
                 self.direction = _DIRECTIONS.get(name, self.direction)
                 if name in _FUNCTIONS:

@@ -1,4 +1,4 @@
-"""Start `polycnc serve` as a process of its own that goes on: forked where that is possible, see `command_server`."""
+"""Start `polycnc serve`, or Python, as a process that goes on: forked where that is possible, see `command_server`."""
 
 from __future__ import annotations
 
@@ -6,8 +6,10 @@ import contextlib
 import os
 import signal
 import subprocess
+import sys
 import tempfile
 import threading
+from collections.abc import Iterator
 from pathlib import Path
 from typing import IO, Any, cast
 
@@ -17,7 +19,7 @@ from support.command import COMMAND, environment, request_of
 class Started:
     """What tests use of `subprocess.Popen`, for a process that another one has forked."""
 
-    def __init__(self, words: list[str], cwd: Path | None) -> None:
+    def __init__(self, words: list[str], cwd: Path | None, **what: str) -> None:
         self._folder = tempfile.TemporaryDirectory()
         names = [os.path.join(self._folder.name, name) for name in ("stdout", "stderr", "status")]
         for name in names:
@@ -25,7 +27,7 @@ class Started:
         self.returncode: int | None = None
         self.args = [*COMMAND, *words]
         place = {"folder": str(cwd or Path.cwd()), "outputs": names[:2], "status": names[2]}
-        request_of({"arguments": words, **place})
+        request_of({"arguments": words, **what, **place})
         self._status: IO[str] = open(names[2], encoding="utf-8")  # noqa: SIM115
         self.pid = int(self._status.readline())
         self.stdout: IO[str] = open(names[0], encoding="utf-8")  # noqa: SIM115
@@ -86,3 +88,25 @@ def started(*arguments: str | Path, cwd: Path | None = None) -> Started:
         env=environment(PYTHONUNBUFFERED="1"),
     )  # fmt: skip
     return cast(Started, process)
+
+
+@contextlib.contextmanager
+def started_python(code: str | Path, *arguments: str | Path, cwd: Path | None = None) -> Iterator[Started]:
+    """Start a script, or code as after `python -c`; it is killed and awaited at the end."""
+    words = [str(each) for each in arguments]
+    if hasattr(os, "fork"):
+        kind = {"code": code} if isinstance(code, str) else {"script": str(code)}
+        process = Started(words, cwd, **kind)
+    else:
+        what = ["-c", code] if isinstance(code, str) else [str(code)]
+        running: Any = subprocess.Popen(
+            [sys.executable, *what, *words], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, cwd=cwd,
+            env=environment(),
+        )  # fmt: skip
+        process = cast(Started, running)
+    try:
+        yield process
+    finally:
+        if process.returncode is None:
+            process.kill()
+            process.communicate(timeout=60)

@@ -150,7 +150,11 @@ def _apci(monkeypatch: pytest.MonkeyPatch, folder: Path, seed: int) -> tuple[Hol
 
 BESIDE = set(MCUG3.extensions)
 """What needs an extended record, and does nothing with one of the manual."""
-FILES = BESIDE | {"InitMcuSystem2", "InitMcuSystem3", "txbf", "txbf2", "rdcbcnct", "wrcbcnct", "getEnvStr"}
+FILES = (
+    BESIDE
+    | set(MCUG3.interrupts)
+    | {"InitMcuSystem2", "InitMcuSystem3", "txbf", "txbf2", "rdcbcnct", "wrcbcnct", "getEnvStr"}
+)
 
 
 def _apci_hold(monkeypatch: pytest.MonkeyPatch, folder: Path, rounds: int, seed: int) -> Hold:
@@ -275,7 +279,7 @@ def test_a_board_is_initialised_lost_and_found(monkeypatch: pytest.MonkeyPatch, 
         assert bytes(rosi) == bytes(system)
         text = ctypes.create_string_buffer(b"NOTHING\0" + b"\xee" * 20, 1024)
         assert library.getEnvStr(text) == hold.python.getEnvStr("NOTHING")[0]
-        assert library.BootFile(b"rwmos.elf", 0) == 1
+        assert library.BootFile(b"rwmos.elf", 0) == 202
         value = ctypes.c_int32(5)
         assert library.rdSampleTime(None) == 0
         assert library.rdSampleTime(ctypes.byref(value)) == 1

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 import re
 import shutil
 import subprocess
@@ -168,8 +169,9 @@ def test_the_same_program_as_a_windows_one(
     names = re.findall(r"\s(\w+(?:@\d+)?)$", imports.partition(f"{library.name}.dll")[2], re.MULTILINE)
     assert len(set(names) & set(library.functions)) >= 5
     assert not any("@" in name for name in names)
-    if shutil.which("wine") is None:
+    wine = os.environ.get("POLYCNC_WINE32", "wine") if target == "win32" else "wine"
+    if shutil.which(wine) is None:
         pytest.skip("no wine here")
-    if target == "win32" and not any(Path(each).exists() for each in ROOTS_OF_32):
+    if target == "win32" and wine == "wine" and not any(Path(each).exists() for each in ROOTS_OF_32):
         pytest.skip("no wine for programs of 32 bits here")
-    assert _run(doors[kind].place, "wine", program) == _said(kind)
+    assert _run(doors[kind].place, wine, program) == _said(kind)

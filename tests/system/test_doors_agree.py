@@ -191,6 +191,17 @@ def check_read(status: dict[str, Any], read: dict[str, Any]) -> None:
     assert read["ActProgramBlock"] == ([block["text"]] if block else [])
     assert read["ActFeedrate"] == channel["feed"]["actual"]
     assert read["ActOverride"] == read["FeedOverride"] == 100 * channel["overrides"]["feed"]
+    parts = status["parts"]
+    lot_ended = read["Production"] == 2 and parts["made"] >= parts["required"]
+    job = {
+        "Identifier": channel["program"], "RunsPlanned": parts["required"], "RunsCompleted": parts["made"],
+        "RunsPlanned/IsValid": parts["required"] != 0, "ProductionPrograms/Program1/Name": channel["program"],
+        "State/CurrentState/Number": 3 if read["Production"] == 2 and not lot_ended else read["Production"],
+    }  # fmt: skip
+    assert read["ActiveJob"] == (channel["program"] or "")
+    assert {name.removeprefix("job "): value for name, value in read.items() if name.startswith("job ")} == (
+        job if channel["program"] else dict.fromkeys(job)
+    )
     assert read["ActSpeed"] == abs(status["spindle"]["actual_rpm"])
     assert read["ToolId"] == channel["tool"]["number"]
     for name, axis in status["axes"].items():
@@ -326,6 +337,19 @@ def test_a_moving_machine_is_read_within_the_cycles_of_the_question(doors: AllDo
         doors.clock(freeze=True)
         doors.command("reset")
         doors.clock(step=500)
+
+
+def test_all_doors_have_the_same_tools(doors: AllDoors) -> None:
+    for number, length_mm in ((17, 83.25), (4, 61.5), (30, 7.125), (4, None)):
+        if length_mm is None:
+            assert doors.http.delete(f"/tools/{number}").status_code == 204
+        else:
+            assert doors.http.put(f"/tools/{number}", json={"length_mm": length_mm}).status_code == 200
+        there = {int(number): tool["description"] for number, tool in doors.http.get("/tools").json().items()}
+        expected = {f"machine.T{number}": (number, name) for number, name in there.items()}
+        assert doors.opcua.tools() == expected
+        _, document = doors.agent.get("/assets")
+        assert set(re.findall(rb' assetId="([^"]+)"', document)) == {name.encode() for name in expected}
 
 
 def test_a_sender_at_a_fanuc_is_told_that_blocks_are_not_taken(doors: AllDoors) -> None:

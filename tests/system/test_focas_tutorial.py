@@ -3,11 +3,9 @@
 from __future__ import annotations
 
 import re
-import subprocess
-import sys
 from pathlib import Path
 
-from support.command import environment, polycnc
+from support.command import polycnc, python
 from support.focas_line import end, serve
 
 TUTORIALS = Path(__file__).parents[2] / "docs" / "tutorials"
@@ -20,18 +18,6 @@ def blocks(page: str) -> dict[str, str]:
     return dict(re.findall(r'```\w+ title="([^"]+)"\n(.*?)```', text, re.DOTALL))
 
 
-def python(*arguments: str | Path, cwd: Path) -> str:
-    return subprocess.run(
-        [sys.executable, *map(str, arguments)],
-        cwd=cwd,
-        env=environment(),
-        capture_output=True,
-        text=True,
-        check=True,
-        timeout=120,
-    ).stdout
-
-
 def test_the_collector_sees_what_the_tutorial_shows(tmp_path: Path) -> None:
     shown = blocks("test-your-collector.md")
     for name in ("collector.py", "faults.toml", "without_network.py"):
@@ -39,10 +25,10 @@ def test_the_collector_sees_what_the_tutorial_shows(tmp_path: Path) -> None:
     for _ in range(2):  # a server started anew counts anew
         process, port = serve("--faults", tmp_path / "faults.toml")
         try:
-            assert python("collector.py", str(port), cwd=tmp_path) == shown["output"]
+            assert python(tmp_path / "collector.py", str(port), cwd=tmp_path).stdout == shown["output"]
         finally:
             assert "Traceback" not in end(process)
-    assert python("without_network.py", cwd=tmp_path) == shown["prints"]
+    assert python(tmp_path / "without_network.py", cwd=tmp_path).stdout == shown["prints"]
 
 
 def test_dissect_explains_a_file_and_refuses_others(tmp_path: Path) -> None:

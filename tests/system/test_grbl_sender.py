@@ -6,7 +6,6 @@ import os
 import re
 import signal
 import socket
-import subprocess
 import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -15,9 +14,8 @@ from typing import Any
 
 import pytest
 
-from support.command import environment
 from support.grbl_sender import stream
-from support.started import started
+from support.started import started, started_python
 
 MACHINE = Path(__file__).parents[1] / "support" / "grbl_machine.py"
 TUTORIAL = Path(__file__).parents[2] / "docs" / "tutorials" / "your-sender.md"
@@ -70,11 +68,10 @@ def machine(process: Any, expected: str) -> Iterator[int]:
 @pytest.mark.skipif(sys.platform == "win32", reason="needs pseudo terminals")
 def test_a_program_is_streamed_over_tcp_and_over_the_terminal(tmp_path: Path) -> None:
     terminal = tmp_path / "tty"
-    arguments = [sys.executable, str(MACHINE), "0", str(terminal), "20"]
-    process = subprocess.Popen(
-        arguments, env=environment(), stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
-    )
-    with machine(process, f" and {re.escape(str(terminal))}") as port:
+    with (
+        started_python(MACHINE, "0", str(terminal), "20") as process,
+        machine(process, f" and {re.escape(str(terminal))}") as port,
+    ):
         with socket.create_connection(("127.0.0.1", port), timeout=60) as connection:
             link = Link(connection.fileno())
             connection.settimeout(None)

@@ -9,11 +9,8 @@ from __future__ import annotations
 
 import contextlib
 import json
-import os
 import random
 import sqlite3
-import subprocess
-import sys
 import time
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -27,6 +24,7 @@ from polycnc.machine import Store
 from polycnc.nc import ProgramText
 from polycnc.runner import run
 from support.programs import MILL
+from support.started import started_python
 
 FEW = 1
 
@@ -282,24 +280,13 @@ WRITES = {
 
 def kill_once(write: Write, folder: Path, chance: random.Random, said: int) -> int:
     """Let a writer write, kill it at a moment of chance, check what it leaves; return what it has acknowledged."""
-    environment = {**os.environ, "NUMBA_DISABLE_JIT": "1"}
-    errors = folder.parent / f"{folder.name}.errors"
-    with (
-        errors.open("w") as sink,
-        subprocess.Popen(
-            [sys.executable, "-c", write.script, str(folder), str(said)],
-            env=environment,
-            stdout=subprocess.PIPE,
-            stderr=sink,
-            text=True,
-        ) as process,
-    ):
-        assert process.stdout is not None
+    with started_python(write.script, folder, str(said)) as process:
         lines = [process.stdout.readline() for _ in range(chance.randint(1, write.lines))]
         time.sleep(chance.random() * 0.02)  # anywhere within the next writes
         process.kill()
         lines += process.stdout.readlines()
-    assert lines[0], errors.read_text()
+        _, errors = process.communicate(timeout=60)
+    assert lines[0], errors
     said = max(said, *(int(line) for line in lines if line.endswith("\n")))
     write.check(folder, said)
     left = [path.name for path in folder.iterdir() if ".partial" in path.name]

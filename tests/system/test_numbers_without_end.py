@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import signal
-import subprocess
-import sys
 from collections.abc import Callable
 from functools import partial
 from pathlib import Path
@@ -17,7 +15,7 @@ from polycnc.controllers.apci import Board
 from polycnc.controllers.imc import Card
 from polycnc.errors import ConfigurationError
 from polycnc.machine import LONGEST_BLOCK_S, Clock, Timed, load_machine, preset_text
-from support.command import environment
+from support.started import started_python
 
 TINY = "0." + "0" * 14 + "1"
 MANY = "".join(f"G1 X{7 + i % 2} F300\n" for i in range(2500)) + "X0\n"  # more than the ordinary path takes
@@ -112,20 +110,10 @@ machine.advance(1 << 61)
 
 @pytest.mark.parametrize(("number", "status"), [(signal.SIGTERM, 143), (signal.SIGINT, -signal.SIGINT)])
 def test_a_signal_ends_a_process_within_compiled_code(number: signal.Signals, status: int) -> None:
-    with subprocess.Popen(
-        [sys.executable, "-c", SCRIPT],
-        env=environment(),
-        stdout=subprocess.PIPE,
-        stderr=subprocess.DEVNULL,
-        text=True,
-    ) as process:
-        assert process.stdout is not None
+    with started_python(SCRIPT) as process:
         assert process.stdout.readline() == "begun\n"
         process.send_signal(number)
-        try:
-            assert process.wait(30) == status
-        finally:
-            process.kill()
+        assert process.wait(30) == status
 
 
 class Interrupted(Exception):

@@ -185,7 +185,7 @@ def test_the_tree_has_what_the_tables_say(served: Served) -> None:
         assert "test" not in below
         for kind in (ua.ObjectIds.Structure, ua.ObjectIds.Enumeration):
             for each in await client.get_node(kind).get_children(refs=ua.ObjectIds.HasSubtype):
-                if each.nodeid.NamespaceIndex:
+                if each.nodeid.NamespaceIndex in index.values():
                     is_abstract = await each.read_attribute(ua.AttributeIds.IsAbstract)
                     assert is_abstract.Value.Value is False, each
         assert {
@@ -283,6 +283,64 @@ def test_what_is_written_acts_and_what_cannot_be_changes_nothing(served: Served)
         ):  # fmt: skip
             assert await write(client, path, written, kind) == code, (path, written)
             assert served.status() == before, (path, written)
+
+    with_client(served, visit)
+
+
+def test_tools_and_the_job_come_and_go_and_clients_are_told(served: Served) -> None:
+    """Whatever changes the tool table, its list has the same tools, without a read between; so with the job."""
+
+    async def visit(client: Client) -> None:
+        tools, plan = (client.get_node(ua.NodeId(f"Machines/machine/{each}", 1)) for each in (
+            "Equipment/Tools", "Production/ProductionPlan"))  # fmt: skip
+        seen = Seen()
+        subscription = await client.create_subscription(50, seen)
+        await subscription.subscribe_events(client.nodes.server, ua.ObjectIds.GeneralModelChangeEventType)
+        versions = {await value(client, f"{tools.nodeid.Identifier}/NodeVersion")}
+        name = client.get_node(ua.NodeId(f"{tools.nodeid.Identifier}/Tool17/Name", 1))
+        there: dict[int, str] = {}
+        for number, text in ((17, "drill 5"), (4, ""), (17, "tap M6"), (4, None), (300, "mill"), (17, None)):
+            if text is None:
+                served.http.delete(f"/tools/{number}").raise_for_status()
+                del there[number]
+            else:
+                served.http.put(f"/tools/{number}", json={"description": text}).raise_for_status()
+                there[number] = text
+            if (number, text) == (17, "tap M6"):
+                await subscription.subscribe_data_change(name)
+            listed = {
+                each.BrowseName.Name: each.NodeId for each in await tools.get_children_descriptions(refs=47)
+            }
+            assert set(listed) == {f"Tool{each}" for each in there}
+            for each, called in there.items():
+                at = f"{tools.nodeid.Identifier}/Tool{each}"
+                members = "ControlIdentifier1", "Name", "Identifier"
+                read = await values(client, *(f"{at}/{member}" for member in members))
+                assert [of.Value.Value for of in read] == [each, called, f"machine.T{each}"]
+            versions.add(await value(client, f"{tools.nodeid.Identifier}/NodeVersion"))
+        assert len(versions) == 6, "it differs with each tool that came or went"
+        await seen.until(
+            lambda: any(node == name.nodeid.Identifier and not text for node, text, _ in seen.values)
+        )
+        await seen.until(lambda: len(seen.events) >= 5)
+        changes = [each for event in seen.events for each in event.Changes]
+        told = [(each.Affected.Identifier.rpartition("/")[2], each.Verb) for each in changes]
+        assert told == [("Tool17", 1), ("Tool4", 1), ("Tool4", 2), ("Tool300", 1), ("Tool17", 2)]
+        with pytest.raises(ua.uaerrors.BadNodeIdUnknown):
+            await name.read_value()
+        served.http.put("/programs/PART.nc", content=PROGRAM)
+        served.command("select_mode", mode="auto")
+        served.command("select_program", program="PART.nc")
+        (job,) = await plan.get_children(refs=ua.ObjectIds.HasOrderedComponent)
+        active = "Machines/machine/Production/ActiveProgram"
+        assert await value(client, f"{active}/JobNodeId") == job.nodeid
+        space = await client.get_namespace_index(TOOL)
+        state = await (await job.get_child([f"{space}:State", "0:CurrentState", "0:Id"])).read_value()
+        shown = await value(client, f"{job.nodeid.Identifier}/State/CurrentState")
+        assert (await client.get_node(state).read_browse_name()).Name == shown.Text
+        of = await client.get_node(f"ns=1;s={job.nodeid.Identifier}/State").read_type_definition()
+        parent = await client.get_node(state).get_parent()
+        assert parent.nodeid == of, "the state is one of the machine's type"
 
     with_client(served, visit)
 

@@ -30,7 +30,7 @@ def _prepared(source: Path, dialect: Path, *programs: str) -> list[tuple[list[li
     """Return the end points of the moves, and the error, of programs prepared by a copy of the package."""
     run = subprocess.run(
         [sys.executable, "-c", _PREPARES, str(dialect), *programs],
-        env={**os.environ, "PYTHONPATH": str(source)},
+        env={**os.environ, "PYTHONPATH": str(source), "NUMBA_DISABLE_JIT": "1"},
         capture_output=True,
         text=True,
         check=True,
@@ -78,7 +78,11 @@ def test_a_cpl_function_is_one_decorated_function(tmp_path: Path) -> None:
     )
     run = subprocess.run(
         [sys.executable, "-c", _LINKS, *programs],
-        env={**os.environ, "PYTHONPATH": os.pathsep.join((str(tmp_path), str(REPOSITORY / "tests")))},
+        env={
+            **os.environ,
+            "PYTHONPATH": os.pathsep.join((str(tmp_path), str(REPOSITORY / "tests"))),
+            "NUMBA_DISABLE_JIT": "1",
+        },
         capture_output=True,
         text=True,
         check=True,
@@ -168,7 +172,7 @@ def test_a_library_function_is_declared_once(tmp_path: Path) -> None:
 
     run = subprocess.run(
         [sys.executable, "-c", _CALLS],
-        env={**os.environ, "PYTHONPATH": str(tmp_path)},
+        env={**os.environ, "PYTHONPATH": str(tmp_path), "NUMBA_DISABLE_JIT": "1"},
         capture_output=True,
         text=True,
         check=False,
@@ -217,11 +221,11 @@ def _fences(page: str) -> list[Fence]:
     return [each for each in fences(REPOSITORY / "docs" / "how-to" / page) if each.title]
 
 
-def _printed(source: Path, text: str, **variables: str) -> list[str]:
+def _printed(source: Path, text: str) -> list[str]:
     """Return the lines that a piece of Python prints with a copy of the package."""
     run = subprocess.run(
         [sys.executable, "-c", text],
-        env={**os.environ, "PYTHONPATH": str(source), **variables},
+        env={**os.environ, "PYTHONPATH": str(source), "NUMBA_DISABLE_JIT": "1"},
         capture_output=True,
         text=True,
         check=False,
@@ -253,7 +257,7 @@ def test_a_dialect_is_a_file_and_its_name(tmp_path: Path) -> None:
     (package / file.title).write_text(file.text, encoding="utf-8")
     _put(package / name.title, f"{name.text.strip()} ", '"bosch")')
     _put(package / sign.title, sign.text, '    _sign("grbl", ')
-    assert _printed(tmp_path, _ROUTES, NUMBA_DISABLE_JIT="1") == [
+    assert _printed(tmp_path, _ROUTES) == [
         "router %ROUTER in line 1",
         "router ",
         "din ",
@@ -283,7 +287,7 @@ def test_a_planner_rule_is_a_few_lines(tmp_path: Path) -> None:
     _put(package / rule.title, rule.text, '    cap = min(asked_mm_s, path["speed_limit_mm_s"], most)\n')
     _put(package / key.title, key.text, "    junction_deviation_mm: ")
     _put(package / given.title, given.text, '        rows["rounding_share"] = ')
-    without, limited = map(float, _printed(tmp_path, _CURVES, NUMBA_DISABLE_JIT="1"))
+    without, limited = map(float, _printed(tmp_path, _CURVES))
     assert without > 100.0
     assert limited == 60.0  # the root of 720 mm/s2 by 5 mm
 

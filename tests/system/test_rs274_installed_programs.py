@@ -45,7 +45,6 @@ REFUSED: dict[str, str] = {
     "lathe_g7x_face_boring": "G72 is not known",
     "lathe_g7x_quadrants": "G70 is not known",
     "nestedcall": "'u' is no function",  # an O-word `callsub`, which rs274 refuses too
-    "skeleton": "a dwell (G4) and a move in one block",
 }
 """Programs that polycnc refuses, with what its error says."""
 REFUSED_BY_RS274 = {"increment", "probe-hole"}

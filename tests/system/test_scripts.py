@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 REPOSITORY = Path(__file__).resolve().parents[2]
-_NAMES = ("build_cache", "check_wheel", "demo", "mutate", "reference", "test", "test_long")
+_NAMES = ("build_cache", "check_wheel", "demo", "mutate", "reference", "release", "test", "test_long")
 SCRIPTS = [REPOSITORY / "scripts" / name for name in _NAMES]
 
 

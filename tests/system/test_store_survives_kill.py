@@ -1,16 +1,17 @@
 """A killed process loses nothing that it has acknowledged."""
 
 import os
+import signal
 import subprocess
 import sys
-from collections.abc import Iterator
-from contextlib import contextmanager
 from pathlib import Path
 
 import pytest
 
 from polycnc.errors import UsageError
 from polycnc.machine._store import Store
+from support.command import python
+from support.started import started_python
 
 # Writes for ever; each line on stdout is the acknowledgement of everything before it.
 WRITER = """
@@ -30,7 +31,7 @@ for number in itertools.count(1):
 
 # Leaves a transaction open.
 HOLDER = """
-import sys
+import signal, sys
 from polycnc.machine._store import Store
 
 store = Store(sys.argv[1])
@@ -39,7 +40,7 @@ macros[1] = 1
 with store.transaction():
     macros.save({number: -1 for number in range(1, 5000)})
     print("inside", flush=True)
-    sys.stdin.read()
+    signal.pause()
 """
 
 OPENER = """
@@ -50,31 +51,9 @@ Store(sys.argv[1])
 """
 
 
-def python(script: str, path: Path) -> "subprocess.Popen[str]":
-    environment = {**os.environ, "PYTHONPATH": os.pathsep.join(sys.path)}
-    return subprocess.Popen(
-        [sys.executable, "-c", script, str(path)],
-        stdin=subprocess.PIPE,
-        stdout=subprocess.PIPE,
-        stderr=subprocess.PIPE,
-        text=True,
-        env=environment,
-    )
-
-
-@contextmanager
-def running(script: str, path: Path) -> Iterator["subprocess.Popen[str]"]:
-    with python(script, path) as process:
-        try:
-            yield process
-        finally:
-            process.kill()
-
-
 def killed_after(lines: int, path: Path) -> int:
     """Kill a writer once it has acknowledged `lines` lines; return the number in its last whole line."""
-    with running(WRITER, path) as process:
-        assert process.stdout is not None
+    with started_python(WRITER, path) as process:
         read = [process.stdout.readline() for _ in range(lines)]
         process.kill()
         read += process.stdout.readlines()
@@ -102,8 +81,7 @@ def test_what_was_acknowledged_is_there_after_a_kill(tmp_path: Path) -> None:
 
 def test_an_open_transaction_is_gone_after_a_kill(tmp_path: Path) -> None:
     path = tmp_path / "machine.db"
-    with running(HOLDER, path) as process:
-        assert process.stdout is not None
+    with started_python(HOLDER, path) as process:
         assert process.stdout.readline() == "inside\n"
         with pytest.raises(UsageError, match="database is locked"):
             Store(path)
@@ -118,10 +96,7 @@ def test_nothing_in_the_owning_process_lets_another_one_in(tmp_path: Path) -> No
         for attempt in (Store, store.snapshot, store.restore):
             with pytest.raises(UsageError):
                 attempt(path)
-        with running(OPENER, path) as process:
-            _, errors = process.communicate()
-        assert process.returncode == 1
-        assert "database is locked" in errors
+        assert "database is locked" in python(OPENER, path, status=1).stderr
 
 
 # Writes 50, forks a child that ends in the way of the second argument, writes 50 more, and is killed.
@@ -217,14 +192,7 @@ os.kill(os.getpid(), signal.SIGKILL)
 @pytest.mark.parametrize("way", ["exit", "error"])
 def test_a_child_that_comes_out_of_a_transaction_leaves_it_to_its_parent(tmp_path: Path, way: str) -> None:
     path = tmp_path / "machine.db"
-    environment = {**os.environ, "PYTHONPATH": os.pathsep.join(sys.path)}
-    process = subprocess.run(
-        [sys.executable, "-c", INSIDE, str(path), way],
-        capture_output=True,
-        text=True,
-        env=environment,
-        check=False,
-    )
+    process = python(INSIDE, path, way, status=None)
     assert process.stdout == "4\n", process.stderr
     with Store(path) as store:
         assert store.area("macros", int).load() == {1: 3, 2: 6, 3: 9, 4: 12}
@@ -253,8 +221,7 @@ os.kill(os.getpid(), signal.SIGKILL)
 @pytest.mark.skipif(not hasattr(os, "fork"), reason="needs fork")
 def test_children_that_are_killed_take_nothing_away(tmp_path: Path) -> None:
     path = tmp_path / "machine.db"
-    with running(KILLED_CHILDREN, path) as process:
-        out, errors = process.communicate()
-    assert out.split()[-1] == "20", errors
+    done = python(KILLED_CHILDREN, path, status=-signal.SIGKILL)
+    assert done.stdout.split()[-1] == "20", done.stderr
     with Store(path) as store:
         assert store.area("macros", int).load() == {number: 7 * number for number in range(1, 21)}

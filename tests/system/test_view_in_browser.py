@@ -13,7 +13,7 @@ import pytest
 
 import polycnc
 from polycnc.stock import Stock, read_stl
-from support.browser import browser
+from support.browser import browser, new_page
 from support.command import polycnc as command
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
@@ -40,14 +40,14 @@ class Opened:
         fails: bool = False,
         **page: Any,
     ) -> None:
-        cut = () if stock is None else ("--stock", stock, "--resolution", "0.5")
+        cut = () if stock is None else ("--stock", stock, "--resolution", "1")
         command("view", EXAMPLES / part, "-m", machine, "-o", folder / "part.html", *cut, status=int(fails))
         result = polycnc.run(EXAMPLES / part, machine, trace=True, check=not fails)
         assert result.trace is not None
         self.trace = result.trace
         self.requests: list[str] = []
         self.errors: list[str] = []
-        self.page = chromium.new_page(**{"viewport": {"width": 1280, "height": 800}, **page})
+        self.page = new_page(chromium, **page)
         self.page.on("request", lambda request: self.requests.append(request.url))
         self.page.on("pageerror", lambda error: self.errors.append(str(error)))
         self.page.goto((folder / "part.html").as_uri())
@@ -134,7 +134,7 @@ def test_slide_play_and_click(
     view.page.locator(".row", has=view.page.locator(f"b:text-is('{line}')")).click()
     assert view.cell("line") == str(line)
     first = np.flatnonzero(view.trace.block == line)
-    assert any(abs(view.time_s - view.trace.t_s[row]) < 0.0021 for row in first)
+    assert np.min(np.abs(view.trace.t_s[first] - view.time_s)) < 0.0021
     view.assert_agrees(drawn)
     view.close()
 
@@ -147,9 +147,27 @@ ON_STAGE = """(place) => {
 }"""
 
 
+PAINTED = """() => {
+  const { stage } = document.getElementById('stage').seen, { width, height } = stage.canvas;
+  const copy = new OffscreenCanvas(width, height).getContext('2d');
+  stage.render();
+  copy.drawImage(stage.canvas, 0, 0);
+  const seen = new Uint32Array(copy.getImageData(0, 0, width, height).data.buffer);
+  return seen.filter((each) => each !== seen[0]).length / seen.length;
+}"""
+"""The share of the picture that has not the colour of its corner."""
+
+
 def test_a_click_on_the_path_goes_to_its_block(chromium: Any, tmp_path: Path) -> None:
-    """Where the tool is drawn at a moment, a click on the path leads back to that moment."""
-    view = Opened(chromium, tmp_path, "lathe_shaft.nc", "lathe2", color_scheme="light")
+    """Where the tool is drawn at a moment, a click on the path leads back to that moment; and the path is seen."""
+    view = Opened(chromium, tmp_path, "lathe_shaft.nc", "lathe2", color_scheme="light", draws=True)
+    assert view.page.evaluate(PAINTED) > 0.01
+    assert (
+        view.page.evaluate(
+            "() => document.getElementById('stage').seen.stage.renderer.getContext().getError()"
+        )
+        == 0
+    )
     view.slide(0.2)  # in the first roughing cut
     then, line, x_mm = view.time_s, view.cell("line"), view.cell("X")
     x, y = view.page.evaluate(ON_STAGE, view.marker())
@@ -162,7 +180,7 @@ def test_a_click_on_the_path_goes_to_its_block(chromium: Any, tmp_path: Path) ->
     view.close()
 
 
-def test_a_phone_in_the_dark(chromium: Any, tmp_path: Path) -> None:
+def test_smaller_screens_show_all_in_one_column_and_in_the_dark(chromium: Any, tmp_path: Path) -> None:
     view = Opened(
         chromium, tmp_path, "bracket.nc", "mill3", viewport={"width": 390, "height": 844}, color_scheme="dark"
     )
@@ -172,6 +190,10 @@ def test_a_phone_in_the_dark(chromium: Any, tmp_path: Path) -> None:
     assert view.page.locator("#legend").inner_text().split() == ["T1", "T2", "T3", "rapid"]
     view.page.locator("#theme").click()
     assert view.page.locator("html").get_attribute("data-theme") == "light"
+    for width, height in ((820, 1180), (390, 844)):
+        view.page.set_viewport_size({"width": width, "height": height})
+        assert view.page.evaluate("() => document.documentElement.scrollWidth") <= width
+        assert view.page.locator("#stage").bounding_box()["height"] >= 300
     view.close()
 
 
@@ -237,14 +259,6 @@ def test_coordinates_of_the_work_of_the_machine_and_to_go(chromium: Any, tmp_pat
     view.close()
 
 
-@pytest.mark.parametrize("size", [(820, 1180), (390, 844)])
-def test_smaller_screens_show_all_in_one_column(chromium: Any, tmp_path: Path, size: tuple[int, int]) -> None:
-    view = Opened(chromium, tmp_path, "bracket.nc", "mill3", viewport={"width": size[0], "height": size[1]})
-    assert view.page.evaluate("() => document.documentElement.scrollWidth") <= size[0]
-    assert view.page.locator("#stage").bounding_box()["height"] >= 300
-    view.close()
-
-
 def test_the_chart_draws_only_what_the_trace_has(chromium: Any, tmp_path: Path) -> None:
     """Lines are the record's; a band goes from its lowest to its highest, with its mean in it."""
     feeds = [310.0 + 137.0 * (n * n % 29) for n in range(900)]
@@ -300,7 +314,7 @@ def test_the_slider_cuts_back_and_forth(chromium: Any, tmp_path: Path) -> None:
         shown = np.array(view.page.evaluate(field))
         assert np.array_equal(seen.setdefault(share, shown), shown)
     assert seen[0.3][0] < seen[1.0][0]
-    result = polycnc.run(EXAMPLES / "bracket.nc", "mill3", stock="auto", resolution_mm=0.5)
+    result = polycnc.run(EXAMPLES / "bracket.nc", "mill3", stock="auto", resolution_mm=1.0)
     assert isinstance(result.stock, Stock)
     heights = result.stock.heights - result.stock.grid.bottom
     assert seen[1.0][1::2] == pytest.approx(heights.ravel(), abs=0.01)

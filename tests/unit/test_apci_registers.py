@@ -37,6 +37,7 @@ ERROR_REG = (
     "19 JSatSAFdone 20 reserved"
 )
 MODE_REG = "0 lookahead 6 bit6 7 maxcheck 10 rotaxisunit 15 MS_DECEL 25 bit25 26 WritelnStops 28 JSatSAF"
+TSK_INFO = "0 incomplete 1 complete"
 RUNNING = "0 running 1 single_step 2 stopped_by_writeln 3 waiting"
 DIGI = " ".join(f"{n} input{n + 1}" for n in range(16)) + (
     " 16 index 17 encoder_error 18 index_latched 19 strobe_latched 20 AEA 21 AEB 22 AEN 23 AES"
@@ -45,16 +46,23 @@ DIGO = " ".join(f"{n} output{n + 1}" for n in range(8))
 IFS = "0 edv 1 cncrdy 16 pfe 17 wdog 18 iae 19 scwdog 20 scpfe 21 BusError 22 EpmBaseResetFlag 23 EpmOpmfResetFlag"
 
 
+def _rows(form: str, bits: str, *without: int) -> pytest.MarkDecorator:
+    """Return the claim of the rows of a table's bits, which are called as `form` says."""
+    words = bits.split()
+    numbered = zip(map(int, words[::2]), words[1::2], strict=True)
+    return pytest.mark.covers(*(form.format(bit, name) for bit, name in numbered if bit not in without))
+
+
 @pytest.mark.parametrize(
     ("table", "bits"),
     [
-        (Axst, AXST),
-        (ErrorReg, ERROR_REG),
-        (Running, RUNNING),
-        (TskInfo, "0 incomplete 1 complete"),
-        (Digi, DIGI),
-        (Digo, DIGO),
-        (Ifs, IFS),
+        pytest.param(Axst, AXST, marks=_rows("apci.axst.{}.{}", AXST)),
+        pytest.param(ErrorReg, ERROR_REG, marks=_rows("apci.ErrorReg.{}.{}", ERROR_REG, 6, 7, 20)),
+        pytest.param(Running, RUNNING, marks=_rows("apci.CNCTS.running.bit{}", RUNNING, 1)),
+        pytest.param(TskInfo, TSK_INFO, marks=_rows("apci.tskinfo.bit{}", TSK_INFO)),
+        pytest.param(Digi, DIGI, marks=_rows("apci.digi.{}", DIGI)),
+        pytest.param(Digo, DIGO, marks=_rows("apci.digo.{}", DIGO)),
+        pytest.param(Ifs, IFS, marks=_rows("apci.ifs.{}.{}", IFS)),
     ],
 )
 def test_a_table_has_the_manual_s_bits_and_no_others(table: type[Bits], bits: str) -> None:
@@ -72,6 +80,12 @@ def test_a_table_has_the_manual_s_bits_and_no_others(table: type[Bits], bits: st
     "apci.MODEREG.OvrMode",
     "apci.MODEREG.ClearZeroPosition",
     "apci.MODEREG.SProfile",
+    "apci.MODEREG.0.lookahead",
+    "apci.MODEREG.7.maxcheck",
+    "apci.MODEREG.10.rotaxisunit",
+    "apci.MODEREG.15.MS_DECEL",
+    "apci.MODEREG.26",
+    "apci.MODEREG.28.JSatSAF",
 )
 def test_modes_have_the_stated_numbers_and_the_ruled_ones_are_free() -> None:
     words = MODE_REG.split()

@@ -133,7 +133,7 @@ def test_the_command_reports_every_mistake_and_writes_nothing(tmp_path: Path) ->
     ("arguments", "text"),
     [
         (["none.sap"], "cannot read none.sap: No such file or directory"),
-        (["part.sap", "--task", "4"], "--task': Input should be less than or equal to 3"),
+        (["part.sap", "--task", "4"], "Invalid value for '--task': '4' is not between 0 and 3"),
         (["part.sap", "-o", "part.sap"], "the command reads that file"),
     ],
 )

@@ -12,20 +12,62 @@ import signal
 import sys
 import threading
 import time
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from pathlib import Path
-from typing import Any
+from typing import Any, ClassVar
 
 import pytest
 
 import polycnc
 from polycnc.errors import UsageError
 from polycnc.runner import batches
-from polycnc.runner.batches import BatchResult, ProgramReport
+from polycnc.runner.batches import BatchResult, Limits, ProgramReport, _workers
+from polycnc.runner.batches._child import Child
+from polycnc.runner.batches._job import Answer, Job, Setup
 from support.command import polycnc as command
 
 GOOD = "G0 X{0} Y2\nG1 X{1} F{2}\nM30\n"
 BAD = "G1 X7 F300\nG1 X9 Q\n"
+
+
+class Kept:
+    """A process that a batch leaves to the next one with the same limits, unless broken off: starts cost most."""
+
+    free: ClassVar[list[tuple[Limits, Child]]] = []
+
+    def __init__(self, limits: Limits) -> None:
+        found = next((each for each in self.free if each[0] == limits), None)
+        if found is not None:
+            self.free.remove(found)
+        self._limits = limits
+        self._child = found[1] if found is not None else Child(limits)
+        self._rests = True
+
+    def answers(self, jobs: Sequence[Job], setups: Sequence[Setup]) -> Iterator[Answer]:
+        """Run jobs as the child does."""
+        self._rests = False
+        yield from self._child.answers(jobs, setups)
+        self._rests = True
+
+    def close(self) -> None:
+        """Leave the process to the next batch, or end it."""
+        if self._rests and self._child.process_id is not None:
+            self.free.append((self._limits, self._child))
+        else:
+            self._child.close()
+
+
+@pytest.fixture(scope="module")
+def kept() -> Iterator[None]:
+    yield
+    for _, child in Kept.free:
+        child.close()
+    Kept.free.clear()
+
+
+@pytest.fixture(autouse=True)
+def _few_starts(kept: None, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(_workers, "Child", Kept)
 
 
 def _store(folder: Path, count: int = 7) -> list[Path]:
@@ -58,7 +100,7 @@ def folder(tmp_path: Path) -> Path:
 
 
 @pytest.fixture(scope="module")
-def detailed(tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[Path, BatchResult]]:
+def detailed(kept: None, tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[Path, BatchResult]]:
     """Run a folder once, with everything that a report has, on two processes."""
     folder = _fill(tmp_path_factory.mktemp("detailed") / "parts")
     with polycnc.batch(folder, jobs=2, detail=True) as result:
@@ -174,7 +216,11 @@ def test_a_program_that_wants_all_memory_is_stopped_alone(tmp_path: Path) -> Non
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="POSIX signals")
-def test_a_process_that_is_killed_loses_nothing(tmp_path: Path) -> None:
+def test_a_process_that_is_killed_loses_nothing(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(_workers, "Child", Child)
+    for _, child in Kept.free:
+        child.close()
+    Kept.free.clear()
     paths = _store(tmp_path / "parts", 60)
     killed: list[int] = []
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 import typing
 from collections.abc import Iterator
 from pathlib import Path
@@ -97,7 +98,26 @@ def test_every_number_is_bounded_and_refused_outside(
         done = CliRunner().invoke(app, [*number.command, f"{number.option}={text}", program])
         assert done.exit_code == 2, (text[:9], done.output, done.exception)
         assert number.option in done.output, (text[:9], done.output)
+        assert re.search(r"is not between|is no (whole )?number|needs|Give ", done.output), done.output
         assert "Traceback" not in done.output
+
+
+def test_what_is_no_choice_is_told_without_the_words_of_a_library(program: str) -> None:
+    wrong = {
+        "run --units in": "'--units': 'in' is not one of 'mm', 'inch'.",
+        "run --skip 0": "'--skip': '0' is not between 1 and 9.",
+        "run --skip two": "'--skip': 'two' is no whole number.",
+        "schema rnu": "Did you mean 'run'? Schemas are: run,",
+        "conformance fanucc": "Did you mean 'fanuc'? Systems are: fanuc,",
+        "warmup sotck": "Did you mean 'stock'? Jobs are: run,",
+        "run --dialect fanc": "Did you mean 'fanuc'? Use din,",
+        "post --control haas-mil": "Did you mean 'haas-mill'? Use bosch-pnc,",
+    }
+    for words, sentence in wrong.items():
+        last = [program] if words.startswith(("run", "post")) else []
+        done = CliRunner().invoke(app, [*words.split(), *last])
+        assert done.exit_code == 2, (words, done.output)
+        assert sentence in done.output, (words, done.output)
 
 
 SHORT = {("run",), ("compare",), ("view",)}

@@ -94,8 +94,8 @@ def test_the_command_says_what_is_missing_and_what_has_no_effect(tmp_path: Path)
     assert done.stdout.splitlines() == [
         "OLD.EXE takes 4 functions from mcug3, of which 1 are missing",
         "openport",
-        "BootFile has no effect: a served board is booted: booting it anew would make another one than the one that "
-        "is served",
+        "BootFile has no effect: booting a served board would make another one than the one that is served; it "
+        "answers 202",
         "wraux has no effect with the manual's record, which has no place for the value; TSRPX has one",
     ]
     program.write_bytes(_pe(["rdtrvl"], wide=True, library="MCUG3"))

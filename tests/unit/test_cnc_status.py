@@ -503,3 +503,15 @@ def test_a_hold_keeps_the_time_that_is_left() -> None:
     made.advance(4000)
     assert made.status().left_s == left_s
     assert left_s[0] > 1.0
+
+
+def test_work_positions_are_what_a_program_says_where_its_work_offset_turns() -> None:
+    text = "G21 G90\nG10 L2 P1 X5 Y3 R30\nG54 G1 X10 Y2 F6000\nG92 X-4.5\nG1 X3.25 Y4\nG4 P9\nM2\n"
+    made = Control("mill3", dialect="linuxcnc")
+    made.select_program(ProgramText.from_text(text, "turned.ngc"))
+    made.select_mode(Mode.AUTO)
+    made.cycle_start()
+    made.advance(2_000)
+    axes = made.axes()
+    assert (axes["X"].work, axes["Y"].work) == pytest.approx((3.25, 4.0), abs=1e-9)
+    assert axes["X"].machine != pytest.approx(axes["X"].work, abs=1.0)

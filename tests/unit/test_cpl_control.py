@@ -160,6 +160,22 @@ def test_a_loop_that_does_something_goes_on_up_to_the_limit(root: Root) -> None:
         runner.run(text, MILL, "bosch", root=root.folder, loop_limit_s=0)
 
 
+@pytest.mark.parametrize(
+    ("loop", "limit"),
+    [
+        ("20 PRN#(1,N%)", "0.2"),
+        ("20 DSP(2,3,N%)", "0.2"),
+        ("20 C%=CLOCK", "0.4"),
+    ],
+)
+def test_a_loop_that_writes_and_asks_nobody_has_half_of_the_limit(root: Root, loop: str, limit: str) -> None:
+    text = f'10 OPENW(1,"out") : N%=0\n{loop}\n30 N%=N%+1\n40 GOTO 20'
+    alarms = runner.run(text, MILL, "bosch", root=root.folder, check=False, loop_limit_s=0.4).alarms
+    assert [alarm.text for alarm in alarms] == [
+        f"the program has looped for {limit} s without a block or a WAIT"
+    ]
+
+
 def test_the_limit_of_loops_is_an_option(root: Root) -> None:
     root.write("main.npg", b"10 X!=1\n20 WHILE X!>0 DO\n30 X!=X!+1\n40 END\n")
     result = CliRunner().invoke(app, ["run", str(root.folder / "main.npg"), "--loop-limit", "0.03"])

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import sys
 from pathlib import Path
 
 import pytest
 
 from polycnc import runner
+from polycnc.cli._debug import debug_command
 from polycnc.cnc import ControlError, RunState
 from polycnc.errors import UsageError
 from polycnc.nc import ProgramText
@@ -110,3 +112,22 @@ def test_what_cannot_be_done_says_so(debugger: Debugger) -> None:
     debugger.control.emergency_stop()
     with pytest.raises(ControlError, match="emergency"):
         debugger.run()
+
+
+class NoTerminal:
+    """A stream that leads to a file, a pipe or /dev/null."""
+
+    def isatty(self) -> bool:
+        return False
+
+
+@pytest.mark.parametrize("stream", [None, NoTerminal()], ids=["closed", "redirected"])
+@pytest.mark.parametrize("name", ["stdin", "stdout"])
+def test_the_screen_is_refused_without_a_terminal(
+    name: str, stream: object, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    program = tmp_path / "main.nc"
+    program.write_text("G1 X4.5 F600\n")
+    monkeypatch.setattr(sys, name, stream)
+    with pytest.raises(UsageError, match="needs a terminal"):
+        debug_command(program)

@@ -85,7 +85,7 @@ def frozen(account: Account, wall: FakeWall) -> Iterator[Host[Account]]:
 def test_commands_of_many_threads_are_all_done_in_order_and_no_reader_sees_half_of_one(
     wall: FakeWall,
 ) -> None:
-    account, each = Account(), 100
+    account, each = Account(), 40
     results: list[list[int]] = [[] for _ in range(THREADS)]
     torn: list[Seen] = []
     backwards: list[tuple[Seen, Seen]] = []

@@ -218,6 +218,65 @@ def test_carry_is_the_carry_of_a_sum_and_the_borrow_of_a_comparison(
         assert [card.read_raw(at, 0, 2) for at in (317, 321, 323, 325)] == counts
 
 
+NAMES = ("Zero", "NotZero", "Great", "GreatEqu", "Little", "Carry", "NotCarry")
+ALL_CONDITIONS = (*(f"IF_{name}" for name in NAMES), *(f"Edge_{name}" for name in NAMES))
+# A command, two numbers, and which of the conditions hold for its result.
+AT_THE_ENDS = (
+    ("CMP32", 2**31 - 1, -1, "NotZero Great GreatEqu Carry"),
+    ("CMP32", -(2**31), 3, "NotZero Little NotCarry"),
+    ("CMP48", 2**47 - 1, -5, "NotZero Great GreatEqu Carry"),
+    ("CMP48", 77, 77, "Zero GreatEqu NotCarry"),
+    ("ADD32", -1, 0, "NotZero Little NotCarry"),
+    ("ADD32", -3, 3, "Zero GreatEqu Carry"),
+    ("ADD32", 2**31 - 1, 2**31 - 1, "NotZero Little NotCarry"),
+    ("ADD48", -2, 1, "NotZero Little NotCarry"),
+    ("ADD48", -2, 3, "NotZero Great GreatEqu Carry"),
+)
+
+
+@pytest.mark.covers(*(f"imc.etype.IMC_{name}" for name in ALL_CONDITIONS), "imc.enum.IMC_EventType")
+@pytest.mark.covers(
+    "imc.concept.event_flags", "imc.event.CMD_CMP32", "imc.event.CMD_CMP48", "imc.event.CMD_ADD32"
+)
+@pytest.mark.covers(
+    "imc.event.CMD_CMP32i", "imc.event.CMD_CMP48i", "imc.event.CMD_ADD48", "imc.event.CMD_ADD32i"
+)
+def test_conditions_at_the_ends_of_the_numbers() -> None:
+    for command, a, b, holds in AT_THE_ENDS:
+        card = ready_card(number_of_axes=1)
+        first, second, _ = CELLS[int(command[-2:])]
+        words = int(command[-2:]) // 16
+        sum_or_difference = (
+            event(command, first=first, second=second)
+            if a % 2
+            else event(f"{command}i", first=first, constant=b)
+        )
+        tested = [sum_or_difference]
+        for k, name in enumerate(ALL_CONDITIONS):
+            add = event("ADD32i", name, first=R32, constant=1 << k, target=R32)
+            tested.append(
+                add
+                if name.startswith("IF")
+                else event("OR16i", name, first=R16, constant=1 << k - 7, target=R16)
+            )
+        card.write_raw(second, b if a % 2 else 0, 0, words)
+        install(card, *tested)
+        for _ in range(2):  # edges need a cycle in which the condition does not hold
+            card.write_raw(first, b if holds.startswith("NotZero") else b + 9, 0, words)
+            card.advance(1)
+        for cell, width in ((R32, 2), (R16, 1)):
+            card.write_raw(cell, 0, 0, width)
+        card.write_raw(first, a, 0, words)
+        card.advance(1)
+        wanted = sum(1 << k for k, name in enumerate(NAMES) if name in holds.split())
+        assert card.read_raw(R32, 0, 2) == wanted, (command, a, b)
+        edges = card.read_raw(R16, 0)
+        assert edges & ~wanted == 0
+        if command.startswith("CMP"):  # two equal numbers before, or a greater first one
+            held = "Zero GreatEqu NotCarry" if "NotZero" in holds else "NotZero Great GreatEqu NotCarry"
+            assert edges == wanted & ~sum(1 << k for k, name in enumerate(NAMES) if name in held.split())
+
+
 @pytest.mark.covers("imc.concept.event_space")
 def test_several_conditional_events_test_the_same_unconditional_one() -> None:
     card = ready_card(number_of_axes=1)

@@ -44,13 +44,17 @@ def test_width_of_a_write_decides_which_words_change(program: Program) -> None:
 @pytest.mark.covers(
     "imc.type.S16", "imc.type.S32", "imc.type.S16.16", "imc.type.S16.32", "imc.type.F16", "imc.type.R16"
 )
-@pytest.mark.covers("imc.type.IMC16", "imc.type.IMC32")
+@pytest.mark.covers(
+    "imc.type.IMC16", "imc.type.IMC32", "imc.type.__int64", "imc.param.user48b2", "imc.param.user48b1"
+)
+@pytest.mark.covers("imc.param.user16b4", "imc.param.user32b7", "imc.param.gearratio", "imc.IMC_SetParam48")
 @pytest.mark.covers("imc.IMC_GetParam16", "imc.IMC_GetParam32", "imc.IMC_GetParam48")
 @pytest.mark.parametrize(
     ("name", "raw"),
     [
         ("user16b4", -12_345), ("mcstgpos", -123_456_789), ("gearoutvel", -70_001), ("gearratio", -(1 << 40) - 5),
-        ("user48b2", 1 << 46), ("stopfilt", -2), ("mcstrack", -1), ("user32b7", 2_000_000_000),
+        ("user48b2", (1 << 46) + (5 << 32) + 3), ("user48b1", -(1 << 46) - 7), ("stopfilt", -2),
+        ("mcstrack", -1), ("user32b7", 2_000_000_000),
     ],
 )  # fmt: skip
 def test_a_number_is_written_and_read_with_its_sign(program: Program, name: str, raw: int) -> None:
@@ -387,10 +391,11 @@ def test_an_event_starts_something_when_a_position_is_reached(program: Program) 
     assert program.get("user16b0") == 0  # only once
 
 
-@pytest.mark.covers("imc.concept.event_space", "imc.param.events")
+@pytest.mark.covers("imc.concept.event_space", "imc.param.events", "imc.const.limits")
 @pytest.mark.covers("imc.IMC_InstallEvent")
 def test_the_card_holds_128_events(program: Program) -> None:
     event = lib.EventInfo.of(lib.CMD_ADD32i, src1=(317, 0), src2=1, dest=(317, 0))
+    assert lib.IMC_InstallEvent(program.handle, [event] * 32, 32, IF) == lib.IMC_OUT_OF_RANGE
     for _ in range(4):
         program.ok(lib.IMC_InstallEvent, [event] * 31, 31, IF)
         program.run(1)

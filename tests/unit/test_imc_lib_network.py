@@ -107,7 +107,7 @@ def test_firmware_of_another_generation_is_not_opened() -> None:
     assert lib.IMC_Open(0, 1)[0] == lib.IMC_OK
 
 
-@pytest.mark.covers("imc.IMC_Close")
+@pytest.mark.covers("imc.IMC_Close", "imc.status.IMC_DEVICE_NOT_OPEN", "imc.type.IMC_HANDLE")
 def test_a_closed_card_cannot_be_reached() -> None:
     card = ToldCard()
     handle = opened(card)
@@ -122,7 +122,7 @@ def test_a_closed_card_cannot_be_reached() -> None:
     assert lib.IMC_SetParam16(again, lib.runLoc, -1, 0, lib.SEL_IFIFO) == lib.IMC_OK
 
 
-@pytest.mark.covers("imc.IMC_Close")
+@pytest.mark.covers("imc.IMC_Close", "imc.status.IMC_INVALID_HANDLE", "imc.type.IMC_HANDLE")
 def test_what_is_no_handle_is_told_so() -> None:
     old = opened(ToldCard())
     lib.attach(ToldCard())

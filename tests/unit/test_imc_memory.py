@@ -22,6 +22,11 @@ from polycnc.controllers.imc.core._parameters import (
 from polycnc.errors import ConfigurationError, UsageError
 from support.imc_card import FLAG, IFIFO, ready_card, send, set_now, setting
 
+# What belongs to the card and not to an axis: contour, cells, waits, events, stops, queues, inputs, outputs, versions.
+CARD_ADDRESSES = {
+    *range(256, 352), *range(479, 482), 489, *range(500, 504), 509, 511, 513, 519, 521, 549, 560, 561, 568, 624, 625,
+    628, 634, 635, 704,
+}  # fmt: skip
 _BITS = {"S16": 16, "U16": 16, "F16": 16, "R16": 16, "S32": 32, "U32": 32, "S16.16": 32, "U16.16": 32}
 _BITS |= {"S16.32": 48, "U16.32": 48}
 
@@ -134,10 +139,29 @@ def test_ratios_have_exact_words() -> None:
     assert card.read_raw(address("gearoutvel"), 0, 2) == 100 * 65536
 
 
+@pytest.mark.covers(
+    *(
+        row
+        for row, name, *_ in _printed()
+        if PARAMETERS[name].scope == "G" and PARAMETERS[name].access == "rw"
+    )
+)
 def test_words_of_the_card_are_the_same_for_every_axis() -> None:
     card = Card()
-    card.write_raw(address("user16b0"), 12345, 3)
-    assert card.read_raw(address("user16b0"), 0) == 12345
+    cells = [
+        each
+        for each in PARAMETERS.values()
+        if re.fullmatch(r"user\d+b\d|group.+|out[12]|gio|giod|event(id|base)", each.name)
+    ]
+    assert len(cells) > 40
+    for k, each in enumerate(cells, 1):
+        card.write_raw(each.address, 300 * k + 7, k % 4, each.words)
+    for k, each in enumerate(cells, 1):
+        assert {card.read_raw(each.address, axis, each.words) for axis in range(4)} == {300 * k + 7}, (
+            each.name
+        )
+    for _, name, *_ in _printed():
+        assert (PARAMETERS[name].scope == "G") == (PARAMETERS[name].address in CARD_ADDRESSES), name
     card.write_raw(address("homepos"), 9, 1, 2)
     assert [card.read("homepos", i) for i in range(4)] == [0, 9, 0, 0]
 

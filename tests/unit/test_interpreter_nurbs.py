@@ -146,7 +146,7 @@ def test_ways_count_from_the_start_of_the_curve_and_inches_are_inches() -> None:
         ("G5.2 X1 Y2 P1\nG1 X3", "1: G1 in a curve (G5.2) that is not ended"),
         ("G5.2 X1 Y2 P1\nX4 Y3 P1 G91", "10: G91 in a curve (G5.2) that is not ended"),
         ("G5.2 X1 Y2 P1\nG92 X0", "1: G92 in a curve (G5.2) that is not ended"),
-        ("G5.2 X1 Y2 P1\nG4 P1 X2", "7: a dwell (G4) and a move in one block"),
+        ("G5.2 X1 Y2 P1\nG4 P1 X2", "7: a control point with X and without Y"),
     ],
 )
 def test_refusals_stand_at_their_word(blocks: str, what: str) -> None:

@@ -137,7 +137,6 @@ def test_any_other_move_ends_a_series(between: str, ordinary_blocks: float) -> N
         ("G28 G5.1 X10 I2 J3", "5: G28 and G5.1 exclude each other: both use the axis words"),
         ("G5.1 X10 I2 J900", "1: axis Y would pass 450.000 mm, past its soft limit of 300.000 mm"),
         ("G5.1 X310 I2 J9", "6: axis X would go to 310.000 mm, past its soft limit of 300.000 mm"),
-        ("G4 P1 G5.1 X10 I1 J1", "12: a dwell (G4) and a move in one block"),
     ],
 )
 def test_refusals_stand_at_their_word_and_change_nothing(block: str, what: str) -> None:

@@ -71,7 +71,8 @@ def _make(folder: Path) -> Path:
 
 
 def _start(folder: Path, cache: Path, **more: str) -> subprocess.Popen[str]:
-    variables = environment(POLYCNC_CACHE_DIR=str(cache), PYTHONDONTWRITEBYTECODE="1", **more)
+    at_once = {"POLYCNC_COMPILE_AT_ONCE": "1"}
+    variables = environment(POLYCNC_CACHE_DIR=str(cache), PYTHONDONTWRITEBYTECODE="1", **at_once, **more)
     command = [sys.executable, "-W", "error", "-c", SCRIPT, str(folder)]
     return subprocess.Popen(command, env=variables, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
 

@@ -12,12 +12,12 @@ from types import CodeType, ModuleType
 from typing import Any
 
 import pytest
-from numba.core.registry import CPUDispatcher
 
 import polycnc
 from polycnc.cli._warmup import _JOBS, warmup_command
-from polycnc.jit._compile import entries
-from polycnc.jit._plain import ALLOWANCE, ALLOWED_STEPS, Allowance, PlainFunctions
+from polycnc.jit._entry import Entry, entries
+from polycnc.jit._marks import Mark
+from polycnc.jit._plain import ALLOWANCE, ALLOWED_STEPS, UNASKED_STEPS, Allowance, PlainFunctions
 from support.command import environment
 
 # Entries that tell from their arguments how long they take, and one that does not.
@@ -111,7 +111,9 @@ print(made(shares), shares(values)[1], made(shares))
     assert said == [f"{PLAIN} {2.5 + (left - 1) + 4.5} {COMPILED}", f"{PLAIN} {2 + left} {PLAIN}"]
 
 
-def test_what_is_kept_is_loaded_and_what_follows_a_clock_or_asks_for_it_is_compiled(tmp_path: Path) -> None:
+def test_what_is_kept_is_loaded_for_much_work_and_what_follows_a_clock_or_asks_for_it_is_compiled(
+    tmp_path: Path,
+) -> None:
     text = "print(add_up(np.array([2.5, 4.0]), 7, 0.5), made(add_up))"
     clock = """
 from polycnc.machine import Pace
@@ -121,7 +123,13 @@ class Wall:
 Pace(Wall())
 """
     assert _run(tmp_path, f"{clock}\n{text}") == [f"7.0 {COMPILED}"]
-    assert _run(tmp_path, text) == [f"7.0 {LOADED}"]
+    much = text.replace("7, 0.5", f"{UNASKED_STEPS // 1000 + 1}, 0.5")
+    assert _run(tmp_path, much) == [f"7.0 {LOADED}"]
+    assert _run(tmp_path, "print(add_up(np.array([2.5, 4.0]), 7, 0.5), 'numba' in sys.modules)") == [
+        "7.0 False"
+    ]
+    # Once numba is there, what is kept is used for little work, too.
+    assert _run(tmp_path, f"add_up(np.array([2.5, 4.0]), {UNASKED_STEPS}, 0.5)\n{text}") == [f"7.0 {(0, 1)}"]
     text = text.replace("add_up(np.array([2.5, 4.0]), 7, 0.5)", "whole(np.array([2.5]), False)")
     text = text.replace("add_up", "whole")
     assert _run(tmp_path, text, POLYCNC_COMPILE_AT_ONCE="1") == [f"2.5 {COMPILED}"]
@@ -129,6 +137,12 @@ Pace(Wall())
 
 def test_steps_that_were_spared_are_given_back_unless_all_is_compiled_by_now() -> None:
     allowance = Allowance()
+    allowance.left = ALLOWED_STEPS
+    assert not allowance.take_unasked(lambda: UNASKED_STEPS + 1)
+    assert allowance.take_unasked(lambda: UNASKED_STEPS - 2)
+    assert not allowance.take_unasked(lambda: 3)
+    assert allowance.take_unasked(lambda: 2)
+    assert allowance.left == ALLOWED_STEPS - UNASKED_STEPS
     allowance.left = 70
     assert not allowance.take(lambda: 71)
     assert allowance.take(lambda: 60)
@@ -156,11 +170,11 @@ def _names_compiled(plain: Any, seen: set[int]) -> list[str]:
         parts = [value]
         if isinstance(value, ModuleType) and value.__name__.startswith("polycnc."):
             parts += [getattr(value, part, None) for part in names]
-        found += [f"{plain.__name__}: {name}" for part in parts if isinstance(part, CPUDispatcher)]
+        found += [f"{plain.__name__}: {name}" for part in parts if isinstance(part, Mark)]
         if getattr(value, "__globals__", None) is not None and hasattr(value, "__code__"):
             found += _names_compiled(value, seen)
     cells = [cell.cell_contents for cell in plain.__closure__ or ()]
-    return found + [f"{plain.__name__}: a cell" for each in cells if isinstance(each, CPUDispatcher)]
+    return found + [f"{plain.__name__}: a cell" for each in cells if isinstance(each, Mark)]
 
 
 def test_no_entry_reaches_compiled_code_when_it_is_plain() -> None:
@@ -169,8 +183,8 @@ def test_no_entry_reaches_compiled_code_when_it_is_plain() -> None:
             importlib.import_module(each.name)
     functions, seen = PlainFunctions(), set[int]()
     # Detached functions are called by their address, from compiled code alone.
-    ours = [each for name, each in entries() if name.startswith("polycnc.") and hasattr(each, "_inner")]
-    assert [found for each in ours for found in _names_compiled(functions.of(each._inner), seen)] == []
+    ours = [each for name, each in entries() if name.startswith("polycnc.") and isinstance(each, Entry)]
+    assert [found for each in ours for found in _names_compiled(functions.of(each), seen)] == []
     assert len(seen) > 300
 
 
@@ -187,4 +201,4 @@ def test_warming_up_makes_every_entry_of_stock_ready() -> None:
     _JOBS["stock"](lambda name, part: None)
     of_stock = {name: each for name, each in entries() if name.startswith("polycnc.stock.")}
     assert len(of_stock) >= 3
-    assert [name for name, each in of_stock.items() if not each.signatures] == []
+    assert [name for name, each in of_stock.items() if not each.compiled().signatures] == []

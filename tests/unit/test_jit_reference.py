@@ -11,7 +11,8 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 
-from polycnc.jit import KNOWN_NUMBA, allocating, call_at, compile_entries, compiled, detached, entry
+from polycnc.jit import allocating, call_at, compile_entries, compiled, detached, entry
+from polycnc.jit._pipeline import KNOWN as KNOWN_NUMBA
 from polycnc.kernel import make_state as make_kernel_state
 
 Floats = npt.NDArray[np.float64]

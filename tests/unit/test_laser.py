@@ -276,7 +276,7 @@ def test_m67_is_a_power_that_stops_nothing_and_m68_one_at_rest() -> None:
     places = [int(np.abs(trace.setpoint[:, 0] - x).argmin()) for x in (7.0, 13.0, 27.0)]
     assert power_of(trace)[places].tolist() == [200.0, 450.0, 700.0]
     at_rest = runner.run(words.format("M68 E0 Q450\n", ""), LASER, "linuxcnc", trace=True)
-    assert [(each.line, each.word) for each in at_rest.events][:1] == [(3, "M68 Q450 E0")]
+    assert [(each.line, each.word) for each in at_rest.events][:1] == [(3, "M68 E0 Q450")]
     assert len(at_rest.trace) == len(plain) + 10  # braking from 50 mm/s and on again, with 5000 mm/s2
     assert power_of(at_rest.trace)[int(np.abs(at_rest.trace.setpoint[:, 0] - 13.0).argmin())] == 450.0
 
@@ -285,5 +285,5 @@ def test_other_outputs_and_machines_keep_m67_as_a_function() -> None:
     program = "G1 X1 F300\nM67 E{} Q20\nX2\nM2\n"
     for config, output in ((LASER, 1), (DRY, 0)):
         listed = moves(program.format(output), config=config, dialect="linuxcnc")
-        assert f"M67 Q20 E{output}" in listed
+        assert f"M67 E{output} Q20" in listed
     assert refusal("G1 X1 F300\nM67 E0\n", config=LASER, dialect="linuxcnc") == "2:1: M67 without Q"

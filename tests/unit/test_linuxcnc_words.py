@@ -18,7 +18,7 @@ ENDS = [
     ("G59.2\nG0 X[#5220] Y[#<_coord_system>]", {"X": 8.0, "Y": 592.0}),
     ("G43.1 X3 Z5\nG0 X1 Z1 Y[#<_tool_offset>+6]", {"X": 4.0, "Z": 6.0, "Y": 7.0}),
     ("G7\nG0 X9 Z[#<_lathe_diameter_mode> + 1]\nG1 F99 Y#<_x>", {"X": 4.5, "Y": 4.5, "Z": 2.0}),
-    ("M7 M8\nG0 X[#<_mist>+2*#<_flood>]\nM9\nG0 Y[#<_mist>+2*#<_flood>+5]", {"X": 3.0, "Y": 5.0}),
+    ("M7\nM8\nG0 X[#<_mist>+2*#<_flood>]\nM9\nG0 Y[#<_mist>+2*#<_flood>+5]", {"X": 3.0, "Y": 5.0}),
     ("G0 @5 ^90\nG1 F100 ^0", {"X": 5.0, "Y": 0.0}),
 ]
 
@@ -145,7 +145,7 @@ def test_functions_have_their_words_in_their_events(tmp_path: Path) -> None:
     path = tmp_path / "part.ngc"
     path.write_text("M62 P3 G1 X2 F100\nM67 E1 Q-2.5\nM101 P4.5 Q7\nM2\n", encoding="ascii")
     words = [event.word for event in polycnc.run(path).events]
-    assert [word for word in words if word[0] == "M"][:3] == ["M62 P3", "M67 Q-2.5 E1", "M101 P4.5 Q7"]
+    assert [word for word in words if word[0] == "M"][:3] == ["M62 P3", "M67 E1 Q-2.5", "M101 P4.5 Q7"]
 
 
 @pytest.mark.parametrize(
@@ -164,3 +164,38 @@ def test_functions_have_their_words_in_their_events(tmp_path: Path) -> None:
 def test_what_functions_refuse(program: str, what: str, tmp_path: Path) -> None:
     with pytest.raises(polycnc.ProgramError, match=what):
         run(tmp_path, program)
+
+
+REFUSED = {
+    "M63": "M63 without P",
+    "M65 P1.5": "P1.5 is not a number of an output",
+    "M67 E2": "M67 without Q",
+    "M68 Q2": "M68 without E",
+    "M68 E2 Q3 P4": "'P' has no meaning",
+    "M7 M8": "exclude each other",
+    "G90.1 G2 X5 I4": "without J",
+    "G4 P.1 G2 X3 R5": "both use P",
+    "G0 G28 X3": "exclude each other",
+    "G2": "an arc without words",
+    "G0 X3 H2": "'H' has no meaning",
+    "G43 D2": "'D' has no meaning",
+    "G19 G42 D2": "in this plane",
+    **{f"G41.1 D3\n{code}": "while radius" for code in ("G55", "G61", "G49", "G42", "G99", "M6", "M64 P1")},
+    "G83 X1 Z-3 R4 Q2\nG73 X2 Z-3 R4": "needs a peck",
+    "G82 X1 Z-3 R4": "needs a dwell",
+    "G81 X1 Z-3 R4 P2": "'P' has no meaning",
+    "G81 X1 Z-3 R4\nG81": "without an axis",
+    "M4 S100\nG84 X1 Z-3 R4": "right-hand thread",
+    "T1 M6\nG84 X1 Z-3 R4": "needs a turning spindle",
+}
+"""What LinuxCNC refuses, and other controls take."""
+
+
+def test_what_linuxcnc_refuses_is_refused(tmp_path: Path) -> None:
+    wrong = {}
+    for program, what in REFUSED.items():
+        with pytest.raises(polycnc.ProgramError) as caught:
+            run(tmp_path, f"F900 S500 M3\n{program}")
+        if what not in caught.value.what:
+            wrong[program] = caught.value.what
+    assert wrong == {}

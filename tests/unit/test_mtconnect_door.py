@@ -85,6 +85,19 @@ def served(names: dict[str, str]) -> list[ServedMachine]:
     return machines
 
 
+def test_a_machine_that_nobody_asks_for_a_minute_is_no_longer_followed() -> None:
+    async def visit(_: Any, machines: list[ServedMachine]) -> list[bool]:
+        (machine,) = machines
+        found = [machine.served.is_followed]
+        minute = machine.served.clock.cycles_for(60.0)
+        machine.served.advance(minute - 1)
+        found.append(machine.served.is_followed)
+        machine.served.advance(1)
+        return [*found, machine.served.is_followed]
+
+    assert with_door({"m": "plain"}, visit) == [True, True, False]
+
+
 def with_door(names: dict[str, str], visit: Callable[[Any, list[ServedMachine]], Any]) -> Any:
     """Visit the application of a door of these machines."""
 

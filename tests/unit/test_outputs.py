@@ -7,6 +7,7 @@ import os
 import subprocess
 import sys
 import threading
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
@@ -17,6 +18,7 @@ from polycnc.cli._app import app
 from polycnc.controllers.bosch.screen import Surface
 from polycnc.errors import UsageError
 from polycnc.runner import post_file, read_trace
+from polycnc.servers.machines._log import Log
 
 TOOL_PATH = (
     "UNITS/MM\nPARTNO A\nFROM/0,0,50\nRAPID\nGOTO/10,20,5\nFEDRAT/300\nGOTO/10,20,-3\nGOTO/17,23,-3\nFINI\n"
@@ -266,3 +268,14 @@ def test_a_full_disk_is_told_with_the_file(special: bool, here: Path) -> None:
         _fill(partial)
     assert caught.value.filename == str(path)
     assert special or list(here.glob("*page*")) == []
+
+
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="needs the device of a full disk")
+def test_a_log_on_a_full_disk_is_told_with_the_file() -> None:
+    log = Log(Path("/dev/full"))
+    acts: list[Callable[[], None]] = [lambda: log.write("ready", port=8193), log.close]
+    for act in acts:
+        with pytest.raises(OSError, match="No space left") as caught:
+            act()
+        assert caught.value.filename == "/dev/full"
+    log.close()

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import hashlib
 import re
+import runpy
 import shutil
 import subprocess
 import sys
+import tarfile
 from importlib import util
 from pathlib import Path
 from typing import Any
@@ -93,6 +96,29 @@ def test_pytest_finds_the_plugin_of_the_wheel_and_loads_no_more_than_it_needs(
     assert "loaded: polycnc polycnc.on_demand polycnc.testing\n" in done.stdout, done.stdout + done.stderr
     assert "polycnc: card" in done.stdout
     assert "(17 cycles)" in done.stdout
+
+
+def test_a_release_lists_its_software_and_its_image_is_made_of_the_source_alone(
+    built: list[Path], tmp_path: Path
+) -> None:
+    release = runpy.run_path(str(REPOSITORY / "scripts" / "_release.py"))
+    wheels = [
+        {"name": "polycnc", "version": "7.5.3", "license": "MIT"},
+        {"name": "NumPy", "version": "2.9", "license_expression": "BSD-3-Clause"},
+    ]
+    listed = release["software"]({"install": [{"metadata": each} for each in wheels]})
+    assert listed["metadata"]["component"]["purl"] == "pkg:pypi/polycnc@7.5.3"
+    found = {each["purl"].rpartition("@")[0] for each in listed["components"]}
+    assert found >= {"pkg:pypi/numpy", "pkg:npm/three", "pkg:npm/uplot"}
+    assert all(each["licenses"] for each in listed["components"])
+    context = tmp_path / "image.tgz"
+    release["image_context"](built[1], (REPOSITORY / "Dockerfile").read_bytes(), context)
+    with tarfile.open(context) as archive:
+        names = archive.getnames()
+    assert len(names) == len(set(names))
+    assert {"Dockerfile", "pyproject.toml", "scripts/_wheel_tag.py", "src/polycnc/__init__.py"} <= set(names)
+    (tmp_path / "b.whl").write_bytes(b"seven")
+    assert release["checksums"](tmp_path.glob("b.*")) == f"{hashlib.sha256(b'seven').hexdigest()}  b.whl\n"
 
 
 def test_the_image_is_made_of_steps_that_can_be_done_without_docker() -> None:

@@ -216,6 +216,22 @@ def test_positions_of_axes_that_lag_behind_on_their_way_back(back: Living) -> No
     ]  # fmt: skip
 
 
+@pytest.mark.covers("cpl.MCODS.1")
+def test_a_shift_of_a_block_to_come_is_not_shown_yet(tmp_path: Path) -> None:
+    living = six(tmp_path)
+    living.start("N1 G1 X10 F60000\nN2 G92 X4\nN3 G1 X30\nN4 G4 F2\n", 20)
+    pnc = living.pnc
+    seen = set()
+    for _ in range(40):
+        block = pnc.status().channel.block
+        assert block is not None
+        shift = living.read(1, 1, 1)[0] - pnc.axes["X"].setpoint
+        seen.add((block.sequence, round(shift, 6)))
+        pnc.advance(2)
+    pnc.close()
+    assert {(1, 0.0), (3, -6.0)} <= seen <= {(1, 0.0), (2, -6.0), (3, -6.0), (4, -6.0)}
+
+
 @cases(
     Case(9, 1, [9]),
     Case(10, 1, [33.75]),

@@ -466,7 +466,7 @@ def test_restoring_goes_back_before_a_program_that_was_loaded_since(nested: Prog
 
 def test_contexts_that_nothing_refers_to_are_forgotten() -> None:
     # Every block has a modal state of its own: S changes in each.
-    program = "".join(f"G1 X{n % 3} S{n} F9000\n" for n in range(1, 14_000))
+    program = "".join(f"G1 X{n % 3} S{n} F9000\n" for n in range(1, 9_000))
     run = program_run(program, segments=512)
     run.start()
     most = 0
@@ -475,7 +475,7 @@ def test_contexts_that_nothing_refers_to_are_forgotten() -> None:
         most = max(most, len(run.channel.records.snapshot()[0]))
     assert most < 7000
     assert run.reading.block is not None
-    assert run.reading.block.line == 13_999
+    assert run.reading.block.line == 8_999
 
 
 def test_time_is_accounted_to_the_tool_in_the_spindle() -> None:

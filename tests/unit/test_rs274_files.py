@@ -55,7 +55,8 @@ def test_programs_begin_with_the_parameters_of_the_file(
 def test_lengths_of_the_file_may_be_inches(tmp_path: Path) -> None:
     (tmp_path / "m.var").write_text("31 7.5\n5163 2\n5221 1\n5224 30\n")
     config = machine(parameter_file=str(tmp_path / "m.var"), parameters_inch=True)
-    assert ends("G0 X#31 Z#5163 A1", config) == pytest.approx([32.9, 50.8, 31.0])
+    assert ends("G0 X#31 Z#5163 A1", config) == pytest.approx([32.9, 2.0, 31.0])
+    assert ends("G28\nG90 G0 X#5221 A1", config)[:2] == pytest.approx([26.4, 50.8])
     out = tmp_path / "out.var"
     ends("G20\n#31=[#5221*8]\n#5163=3", config, save_parameters=out)
     found = dict(line.split("\t") for line in out.read_text().splitlines())

@@ -202,6 +202,75 @@ def test_a_connection_that_is_never_opened_ends(monkeypatch: pytest.MonkeyPatch)
     with_door("focas", "fanuc", Machinery("m"), visit)
 
 
+CROWDED: dict[str, tuple[str, bytes, bytes]] = {
+    "http": ("plain", b"GET /health HTTP/1.1\r\nHost: localhost\r\n\r\n", b"HTTP/1.1 200 "),
+    "mtconnect": ("plain", b"GET /probe HTTP/1.1\r\nHost: localhost\r\n\r\n", b"HTTP/1.1 200 "),
+    "shdr": ("plain", b"* PING\n", b"2000-01-01T"),
+    "grbl": ("plain", b"?", b"Grbl 1.1"),
+    "focas": ("fanuc", bytes(Frame(FrameType.OPEN, b"\0\1")), b"\xa0\xa0\xa0\xa0"),
+    "calls": ("fanuc", (4).to_bytes(4, "little") + b"none", b""),
+}
+"""How each door is spoken to, and how what it says begins; b"" for anything, its end as well."""
+
+
+async def _crowd(name: str, port: int, count: int) -> None:
+    """Open so many connections, most of which say half of something; one that comes after them is answered."""
+    _, hello, begins = CROWDED[name]
+
+    async def said(writes: bytes) -> bytes:
+        reader, writer = await asyncio.open_connection("127.0.0.1", port)
+        writer.write(writes)
+        try:
+            return await asyncio.wait_for(reader.read(1 << 14), 20)
+        except ConnectionError:
+            return b""
+        finally:
+            writer.close()
+
+    lines: list[socket.socket] = []
+    try:
+        for number in range(count):
+            line = socket.create_connection(("127.0.0.1", port), timeout=20)
+            lines.append(line)
+            line.sendall(hello[: number % len(hello)])
+            if number % 50 == 0:
+                await asyncio.sleep(0)
+        while_crowded = await said(hello)
+        refused = not while_crowded or b"Another sender" in while_crowded
+        assert refused or while_crowded.lstrip().startswith(begins), (name, while_crowded)
+    finally:
+        for line in lines:
+            line.close()
+    for _ in range(200):  # those that have gone are noticed
+        answer = await said(hello)
+        if answer.lstrip().startswith(begins) and (answer or not begins):
+            return
+        await asyncio.sleep(0.01)
+    raise AssertionError(f"{name} answers nobody after a crowd")
+
+
+def _visit_crowded(name: str, count: int) -> None:
+    kind = CROWDED[name][0]
+
+    async def visit(port: int) -> None:
+        await _crowd(name, port, count)
+
+    with_door(name, kind, Machinery("m", "mill3" if kind == "plain" else None), visit)
+
+
+def test_a_crowd_of_half_begun_questions_stops_no_door() -> None:
+    """Each door, 120 connections that say nothing or a part of something, of which some are cut in each place."""
+    assert set(CROWDED) | {"opcua"} == set(DOORS)
+    for name in CROWDED:
+        _visit_crowded(name, 120)
+
+
+@pytest.mark.long
+def test_thousands_of_half_begun_questions_stop_no_door() -> None:
+    for name in CROWDED:
+        _visit_crowded(name, 4_000)
+
+
 def test_a_system_without_files_is_told_once_in_a_word() -> None:
     told: list[tuple[str, str]] = []
 

@@ -170,16 +170,21 @@ def test_large_modules_classes_and_functions_are_found() -> None:
 def way(call: Callable[[], object]) -> tuple[int, int, int]:
     """Return how many files a call enters, how often it changes the file, and how often it comes back to one."""
     visits: list[str] = []
-    root = f"{PACKAGE}{os.sep}"
+    root, into_compiled = f"{PACKAGE}{os.sep}", f"{PACKAGE / 'jit'}{os.sep}"
+
+    def counts(frame: FrameType) -> bool:
+        return frame.f_code.co_filename.startswith(root) and not frame.f_code.co_filename.startswith(
+            into_compiled
+        )
 
     def look(frame: FrameType | None, event: str, _: object) -> None:
-        if event == "return" and frame is not None and frame.f_code.co_filename.startswith(root):
+        if event == "return" and frame is not None and counts(frame):
             frame = frame.f_back
-            while frame is not None and not frame.f_code.co_filename.startswith(root):
+            while frame is not None and not counts(frame):
                 frame = frame.f_back
         elif event != "call":
             return
-        if frame is not None and frame.f_code.co_filename.startswith(root):
+        if frame is not None and counts(frame):
             visits.append(frame.f_code.co_filename)
 
     before = sys.getprofile()

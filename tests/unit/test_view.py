@@ -169,14 +169,14 @@ def test_a_program_without_motion_has_a_page() -> None:
 
 def test_a_long_record_is_thinned_to_so_many_points() -> None:
     """A zigzag of which every corner matters, until there are too many: the tolerance grows and is told."""
-    program = "F6000\n" + "".join(f"G1 X{i * 0.3:.1f} Y{0.4 * (i % 2):.1f}\n" for i in range(1, 900))
+    program = "F6000\n" + "".join(f"G1 X{i * 0.3:.1f} Y{0.4 * (i % 2):.1f}\n" for i in range(1, 360))
     result = polycnc.run(program, trace=True)
     assert result.trace is not None
     assert result.trace.execution is not None
-    collector = TrackCollector(("mm", "mm", "mm"), most=200)
+    collector = TrackCollector(("mm", "mm", "mm"), most=80)
     collector.add_trace(result.trace, result.trace.execution)
     track = collector.track(result.trace.execution)
-    assert len(track.t_s) <= 2 * 200 + 1
+    assert len(track.t_s) <= 2 * 80 + 1
     assert track.thinned
     assert set(track.number.tolist()) <= set(result.trace.execution.number.tolist())
     assert track.tolerance_mm > 0.005

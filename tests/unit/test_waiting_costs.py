@@ -24,6 +24,8 @@ A_WAIT = 2000
 """Lines in a cycle of a program that waits: a look at the condition, and what a cycle costs anyway."""
 A_LOOP = 100_000
 """Lines in a cycle of a program that works without end."""
+WRITING = 15_000
+"""Lines in a cycle of a program that writes, shows or draws without end: a millisecond or two."""
 
 CPL = {
     "WAIT": "10 WAIT(,900000)",
@@ -49,6 +51,13 @@ CPL = {
     "empty blocks": "N10 (waits)\n20 IF IC(4)=FALSE THEN GOTO N10 ENDIF",
     "nothing": "10 GOTO 10",
 }  # fmt: skip
+WRITING_CPL = {
+    "writes": '5 N%=5\n10 OPENW(1,"out")\n20 PRN#(1,N%)\n30 GOTO 20',
+    "shows": '10 DSP(2,3,"on")\n20 GOTO 10',
+    "erases": '10 R%=ERASE("none")\n20 GOTO 10',
+    "draws": "10 LIN(5,7,630,300)\n20 GOTO 10",
+    "circles": "10 CIR(300,200,150)\n20 GOTO 10",
+}
 MACROS = {
     "variable, WHILE": "#500=0\nWHILE[#500EQ0]DO1\nEND1",
     "variable, GOTO": "#500=0\nN10IF[#500EQ0]GOTO10",
@@ -133,14 +142,18 @@ def lines_a_cycle(device: Any) -> float:
     return lines / CYCLES
 
 
-def bounded(waits: dict[str, str], loops: dict[str, str]) -> pytest.MarkDecorator:
+def bounded(
+    waits: dict[str, str], loops: dict[str, str], writes: dict[str, str] | None = None
+) -> pytest.MarkDecorator:
+    writes = writes or {}
     cases = [(waits[each], A_WAIT) for each in waits] + [(loops[each], A_LOOP) for each in loops]
+    cases += [(writes[each], WRITING) for each in writes]
     return pytest.mark.parametrize(
-        ("text", "most"), cases, ids=[*waits, *(f"works: {each}" for each in loops)]
+        ("text", "most"), cases, ids=[*waits, *(f"works: {each}" for each in (*loops, *writes))]
     )
 
 
-@bounded(CPL, ENDLESS_CPL)
+@bounded(CPL, ENDLESS_CPL, WRITING_CPL)
 def test_a_cycle_of_a_cpl_program_is_bounded(root: Path, text: str, most: int) -> None:
     (root / "main.npg").write_text(f"{text}\nM30\n")
     with closing(Pnc(root)) as made:

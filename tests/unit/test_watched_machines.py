@@ -63,7 +63,23 @@ def test_it_is_looked_at_ten_times_a_second_while_something_moves() -> None:
     assert [round(at, 6) for at in seen] == [round(at, 6) for at in (*idle, *busy)]
 
 
-@settings(max_examples=25)
+def test_what_nobody_wants_to_see_is_looked_at_once_a_second_until_somebody_does() -> None:
+    control, served, _ = watched()
+    served._watches.clear()
+    seen: list[float] = []
+    wanted = False
+    served.watch(lambda: seen.append(control.clock.now_s), lambda: wanted)
+    control.select_program(ProgramText("LONG", b"G1 X120 F1200\nM30\n"))
+    control.cycle_start()
+    second = control.clock.cycles_for(IDLE_S)
+    served.advance(2 * second + 30)
+    assert [round(at, 6) for at in seen] == [1.0, 2.0]
+    wanted = True
+    served.advance(second // 2)
+    assert [round(at, 6) for at in seen[2:]] == [2.1, 2.2, 2.3, 2.4, 2.5]
+
+
+@settings(max_examples=15)
 @given(st.lists(st.integers(1, 3409), max_size=12))
 def test_observations_do_not_depend_on_cuts(cuts: list[int]) -> None:
     assert lived(cuts) == whole()

@@ -175,3 +175,16 @@ def test_stops_of_single_block_do_not_depend_on_who_looks(step: int) -> None:
                 break
             other.advance(3, until=1)
         assert (other.clock.cycles, other.status().axes["X"].machine) == (cycles, x)
+
+
+def test_what_a_pc_writes_during_a_block_counts_for_the_next_but_one() -> None:
+    made = PowerMate(2)
+    made.programs.register(1, "O0001\nG1 X10. F600\nX20.\nX[#500]\nM30\n")
+    made.macros.set(500, 7.0)
+    made.select_mode("MEM")
+    made.select_program(1)
+    made.cycle_start()
+    made.advance(20)
+    made.macros.set(500, 33.0)
+    made.advance(9000)
+    assert made.status().axes["X"].machine == 33.0

@@ -28,6 +28,7 @@ from polycnc.cli import (
     _view,
     _warmup,
 )
+from polycnc.cli._command import Command
 from polycnc.cli._errors import INTERRUPTED, check_environment, end_on_termination, end_with_report, guarded
 from polycnc.cli._output import print_remarks
 
@@ -58,49 +59,61 @@ def _options(
     """Hold the options of the command itself."""
 
 
-app.command("run", short_help="Run a part program: times, path, alarms.")(guarded(_run.run_command))
-app.command("view", short_help="Write a page that shows a run: path, time, blocks, tools.")(
+app.command("run", cls=Command, short_help="Run a part program: times, path, alarms.")(
+    guarded(_run.run_command)
+)
+app.command("view", cls=Command, short_help="Write a page that shows a run: path, time, blocks, tools.")(
     guarded(_view.view_command)
 )
-app.command("batch", short_help="Run or check whole folders of programs.")(guarded(_batch.batch_command))
-app.command("compare", short_help="Compare two programs, or one on two machines.")(
+app.command("batch", cls=Command, short_help="Run or check whole folders of programs.")(
+    guarded(_batch.batch_command)
+)
+app.command("compare", cls=Command, short_help="Compare two programs, or one on two machines.")(
     guarded(_compare.compare_command)
 )
-app.command("debug", short_help="Execute a program block by block and look at it.")(
+app.command("debug", cls=Command, short_help="Execute a program block by block and look at it.")(
     guarded(_debug.debug_command)
 )
-app.command("check", short_help="Report every error of part programs.")(guarded(_check.check_command))
-app.command("lsp", short_help="Serve an editor: errors and codes while you type.")(guarded(_lsp.lsp_command))
-app.command("post", short_help="Turn a tool path into a program for a control.")(guarded(_post.post_command))
-app.command("machine", short_help="Show a machine's axes and limits.")(guarded(_machine.machine_command))
-app.command("serve", short_help="Serve a simulated control to clients on the network.")(
+app.command("check", cls=Command, short_help="Report every error of part programs.")(
+    guarded(_check.check_command)
+)
+app.command("lsp", cls=Command, short_help="Serve an editor: errors and codes while you type.")(
+    guarded(_lsp.lsp_command)
+)
+app.command("post", cls=Command, short_help="Turn a tool path into a program for a control.")(
+    guarded(_post.post_command)
+)
+app.command("machine", cls=Command, short_help="Show a machine's axes and limits.")(
+    guarded(_machine.machine_command)
+)
+app.command("serve", cls=Command, short_help="Serve a simulated control to clients on the network.")(
     guarded(_serve.serve_command)
 )
-app.command("rehearse", short_help="Say what happens in a scenario, without waiting for it.")(
+app.command("rehearse", cls=Command, short_help="Say what happens in a scenario, without waiting for it.")(
     guarded(_rehearse.rehearse_command)
 )
-app.command("clib", short_help="Write and build a C library that old programs link against.")(
+app.command("clib", cls=Command, short_help="Write and build a C library that old programs link against.")(
     guarded(_clib.clib_command)
 )
-app.command("calls", short_help="Serve a machine to C programs, and trace what they call.")(
+app.command("calls", cls=Command, short_help="Serve a machine to C programs, and trace what they call.")(
     guarded(_calls.calls_command)
 )
-app.command("conformance", short_help="Show which parts of the manuals are tested.")(
+app.command("conformance", cls=Command, short_help="Show which parts of the manuals are tested.")(
     guarded(_conformance.conformance_command)
 )
-app.command("schema", short_help="Print the JSON schema of outputs and files.")(
+app.command("schema", cls=Command, short_help="Print the JSON schema of outputs and files.")(
     guarded(_schema.schema_command)
 )
-app.command("warmup", short_help="Compile beforehand what the first use would wait for.")(
+app.command("warmup", cls=Command, short_help="Compile beforehand what the first use would wait for.")(
     guarded(_warmup.warmup_command)
 )
-_focas.focas_app.command("dissect", short_help="Explain captured bytes of the protocol.")(
+_focas.focas_app.command("dissect", cls=Command, short_help="Explain captured bytes of the protocol.")(
     guarded(_focas.dissect_command)
 )
 app.add_typer(_focas.focas_app, name="focas", short_help="Tools around the protocol of FANUC controls.")
-_mtconnect.mtconnect_app.command("devices", short_help="Write the Devices.xml of a machine for an agent.")(
-    guarded(_mtconnect.devices_command)
-)
+_mtconnect.mtconnect_app.command(
+    "devices", cls=Command, short_help="Write the Devices.xml of a machine for an agent."
+)(guarded(_mtconnect.devices_command))
 app.add_typer(_mtconnect.mtconnect_app, name="mtconnect", short_help="Tools around MTConnect.")
 app.add_typer(_sap.sap_app, name="sap", short_help="Compile stand-alone programs of the APCI board.")
 

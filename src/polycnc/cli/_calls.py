@@ -36,11 +36,14 @@ def calls_command(
     from dataclasses import replace
 
     from polycnc.cli._serve import serve_plan
-    from polycnc.errors import UsageError
+    from polycnc.errors import UsageError, did_you_mean
     from polycnc.servers.setup import Flags, plan_of
 
     if kind not in KINDS:
-        raise UsageError(f"there is no C library of '{kind[:40]}'", hint=f"There are {', '.join(KINDS)}.")
+        raise UsageError(
+            f"there is no C library of '{kind[:40]}'",
+            hint=f"{did_you_mean(kind, KINDS)}There are {', '.join(KINDS)}.",
+        )
     if trace is not None:
         try:
             trace.open("a").close()

@@ -29,12 +29,15 @@ def conformance_command(
     With a SYSTEM, list its open rows, or those in another state.
     """
     from polycnc.conformance import load_conformance, row_listing, summary_table
-    from polycnc.errors import UsageError
+    from polycnc.errors import UsageError, did_you_mean
 
     found = load_conformance()
     counts = found.counts()
     if system is not None and system not in counts:
-        raise UsageError(f"unknown system '{system}'", hint=f"Systems are: {', '.join(counts)}")
+        raise UsageError(
+            f"unknown system '{system}'",
+            hint=f"{did_you_mean(system, counts)}Systems are: {', '.join(counts)}",
+        )
     if state is not None and system is None:
         raise UsageError("--list needs a system", hint=f"Name one of {', '.join(counts)}.")
     if as_json:

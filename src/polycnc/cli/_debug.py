@@ -32,7 +32,7 @@ def debug_command(
             "the debugger needs textual", hint="Install it: pip install 'polycnc[debug]'."
         ) from None
     debugger = runner.Debugger(runner.program_text(program), machine, dialect, root=root)
-    if not (sys.stdin.isatty() and sys.stdout.isatty()):
+    if not all(stream is not None and stream.isatty() for stream in (sys.stdin, sys.stdout)):
         raise UsageError(
             "the debugger needs a terminal to draw on and to read keys from",
             hint="Run it in a terminal window, without < > or | around it; `polycnc run` needs none.",

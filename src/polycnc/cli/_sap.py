@@ -8,6 +8,7 @@ from typing import Annotated
 
 import typer
 
+from polycnc.cli._command import Command
 from polycnc.cli._errors import guarded
 from polycnc.cli._output import bold, say
 
@@ -61,4 +62,6 @@ def compile_command(
     say(f"wrote {target}: task {task}, {len(program.code)} instructions")
 
 
-sap_app.command("compile", short_help="Compile a program to a .CNC file.")(guarded(compile_command))
+sap_app.command("compile", cls=Command, short_help="Compile a program to a .CNC file.")(
+    guarded(compile_command)
+)

@@ -9,7 +9,7 @@ from typing import Annotated, TypeAlias
 import typer
 
 from polycnc.cli._output import say
-from polycnc.errors import UsageError
+from polycnc.errors import UsageError, did_you_mean
 
 Progress: TypeAlias = Callable[[str, float], None]
 
@@ -141,7 +141,9 @@ def warmup_command(
     from polycnc.jit import compile_at_once
 
     if job not in (*_JOBS, "all"):
-        raise UsageError(f"unknown job '{job}'", hint=f"Jobs are: {', '.join(_JOBS)}, all.")
+        raise UsageError(
+            f"unknown job '{job}'", hint=f"{did_you_mean(job, _JOBS)}Jobs are: {', '.join(_JOBS)}, all."
+        )
     compile_at_once()  # what is run here to be compiled is small work
     for name, warm in _JOBS.items():
         if job in (name, "all"):

@@ -48,7 +48,7 @@ class OpenProgram:
     def starved(self) -> bool:
         """Whether the path rests because nothing more has come."""
         run = self._run
-        return run is not None and not self._channel.broken and run.starved
+        return run is not None and not self._channel.broken and run.reading.starved
 
     @property
     def lines(self) -> int:

@@ -214,13 +214,6 @@ class ProgramRun:
         """What is wrong with the program, if anything is, as far as it has been prepared."""
         return self.channel.error
 
-    @property
-    def starved(self) -> bool:
-        """Whether the path rests because nothing more of a program that is still coming has come."""
-        row = self._runner.row
-        rests = self.at_rest and not self._moment.unanswered and bool(row["head"] >= row["tail"])
-        return self.active and rests and self.channel.starved
-
     def line_check(self) -> LineCheck:
         """Return a check of blocks that would come after what has been prepared."""
         check = self.channel.line_check()

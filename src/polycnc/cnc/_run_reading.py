@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from polycnc.cnc._path_runner import Floats, PathRunner
+from polycnc.cnc._run_state import RunState
 from polycnc.cnc._tool_times import ToolTime, path_times
 from polycnc.nc import BlockRecord, Call, ModalWords
 
@@ -14,6 +15,24 @@ class RunReading:
         self._runner = runner
         self._machine = runner.machine
         self._path = runner.path
+
+    @property
+    def state(self) -> RunState:
+        """What the run is doing."""
+        return self._runner.moment.state
+
+    @property
+    def locked(self) -> bool:
+        """Whether the path is executed without its axes."""
+        return self._runner.moment.locked
+
+    @property
+    def starved(self) -> bool:
+        """Whether the path rests because nothing more of a program that is still coming has come."""
+        runner = self._runner
+        if runner.moment.state is not RunState.ACTIVE or runner.moment.unanswered or not runner.at_rest:
+            return False
+        return bool(runner.row["head"] >= runner.row["tail"]) and runner.channel.starved
 
     @property
     def tag(self) -> int:

@@ -118,6 +118,7 @@ class StatusReader:
                 to_go[index] = _left(motion, float(of.machine.state.base[index]))
         actual, velocity, setpoint, lag = (each.tolist() for each in self._arrays)
         shown = actual if (locked := self._of_locked(actual)) is None else locked
+        work = self._turned([at - own for at, own in zip(shown, zero, strict=True)])
         rows: list[AxisStatus] = []
         for index, name in enumerate(self._names):
             at, speed = actual[index], velocity[index]
@@ -126,7 +127,7 @@ class StatusReader:
                     name,
                     self._units[index],
                     at,
-                    shown[index] - zero[index],
+                    work[index],
                     shown[index] - of.relative_zero[index],
                     to_go[index],
                     setpoint[index],
@@ -144,11 +145,18 @@ class StatusReader:
         self._axes = FrozenDict(zip(self._names, rows, strict=True))
         return self._axes
 
+    def _turned(self, work: list[float]) -> list[float]:
+        """Return distances from program zero as coordinates, where a work offset or the program turns the workpiece."""
+        for channel in self._of.channels:
+            if (block := self._blocks[channel.path].read()) is not None:
+                block.modal.shifts.back(work)
+        return work
+
     def _of_locked(self, actual: list[float]) -> list[float] | None:
         """Return what positions of programs show where a machine lock lets paths run without their axes."""
         state, shown = self._of.machine.state, None
         for channel in self._of.channels:
-            if channel.run is None or not channel.run.switches.machine_lock:
+            if channel.run is None or not channel.run.reading.locked:
                 continue
             shown = shown or list(actual)
             for column, axis in enumerate(state.paths.axis[channel.path]):
@@ -217,7 +225,7 @@ class StatusReader:
         )
         run = channel.run
         read = ChannelStatus(
-            RunState.ALARM if channel.broken else RunState.READY if run is None else run.state,
+            RunState.ALARM if channel.broken else RunState.READY if run is None else run.reading.state,
             Motion.DWELL if dwells else Motion.MOVING if moves or by_hand else Motion.NONE,
             None if channel.program is None else channel.program.name,
             block,
@@ -232,7 +240,7 @@ class StatusReader:
             channel.overrides,
             channel.switches,
             channel.axes,
-            run is not None and not channel.broken and run.starved,
+            run is not None and not channel.broken and run.reading.starved,
         )
         self._channels[number] = read
         return read

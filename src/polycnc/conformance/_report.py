@@ -15,7 +15,7 @@ from polycnc.conformance._claims import (
     read_stand_ins,
 )
 from polycnc.conformance._rows import SYSTEMS, Row, data_folder, read_rows
-from polycnc.errors import ConfigurationError, UsageError
+from polycnc.errors import ConfigurationError, UsageError, did_you_mean
 
 
 class State(StrEnum):
@@ -64,7 +64,10 @@ class Conformance:
             UsageError: The system or the state is unknown.
         """
         if system is not None and system not in SYSTEMS:
-            raise UsageError(f"unknown system '{system}'", hint=f"Systems are: {', '.join(SYSTEMS)}")
+            raise UsageError(
+                f"unknown system '{system}'",
+                hint=f"{did_you_mean(system, SYSTEMS)}Systems are: {', '.join(SYSTEMS)}",
+            )
         if state is not None and state not in tuple(State):
             raise UsageError(f"unknown state '{state}'", hint=f"States are: {', '.join(State)}")
         return tuple(

@@ -4,21 +4,20 @@ A kept function is found again by the content of all it reaches, not by the time
 checkout, a reinstallation and a copied cache compile nothing, nor does a change that no compiled function reaches.
 """
 
-from polycnc.jit._cache import FILES
-from polycnc.jit._compile import OPEN_INTERNALS, allocating, compiled, entry, versions
+from collections.abc import Callable, Iterable
+
 from polycnc.jit._detached import Detached, Ready, call_at, detached
-from polycnc.jit._files import CACHE_FOLDER, SHIPPED_FOLDER, Files
+from polycnc.jit._entry import allocating, compiled, entry, versions
+from polycnc.jit._files import CACHE_FOLDER, FILES, SHIPPED_FOLDER, Files
+from polycnc.jit._marks import OPEN_INTERNALS
 from polycnc.jit._notice import COMPILING
-from polycnc.jit._pipeline import KNOWN as KNOWN_NUMBA
 from polycnc.jit._plain import compile_at_once
 from polycnc.jit._reach import Fingerprints, NotKnownError
-from polycnc.jit._warm import compile_entries
 
 __all__ = [
     "CACHE_FOLDER",
     "COMPILING",
     "FILES",
-    "KNOWN_NUMBA",
     "OPEN_INTERNALS",
     "SHIPPED_FOLDER",
     "Detached",
@@ -35,3 +34,14 @@ __all__ = [
     "entry",
     "versions",
 ]
+
+
+def compile_entries(package: str, states: Iterable[object], progress: Callable[[str, float], None]) -> int:
+    """Compile, or load, the entries of a package whose arguments are numbers and named tuples like `states`.
+
+    The package must have been imported. `progress` is called with the name of each entry and the part that is done.
+    Returns how many entries were left out, because they take something else.
+    """
+    from polycnc.jit._warm import compile_all
+
+    return compile_all(package, states, progress)

@@ -1,12 +1,13 @@
-"""Decorators for functions that numba compiles: internal ones, and the entries from Python, which are kept on disk."""
+"""What numba makes of marked functions: internal ones, and entries, which do nothing but call an internal one."""
 
 from __future__ import annotations
 
 import functools
 import inspect
-import os
-from collections.abc import Callable
-from typing import Any, ParamSpec, TypeVar, cast, overload
+import threading
+from collections.abc import Callable, Sequence
+from types import CodeType, FunctionType
+from typing import Any
 
 import numba
 from numba.core.compiler_lock import global_compiler_lock
@@ -15,51 +16,39 @@ from numba.core.registry import CPUDispatcher
 from numba.core.types import Omitted
 
 from polycnc.jit._cache import ContentCache
+from polycnc.jit._calls import call
+from polycnc.jit._marks import Mark, call_in_python
 from polycnc.jit._pipeline import pipelines
-from polycnc.jit._plain import ALLOWANCE, PlainEntry, values_of
+from polycnc.jit._plain import ALLOWANCE
+from polycnc.jit._reach import codes
 from polycnc.jit._reference import by_reference
 
-P = ParamSpec("P")
-R = TypeVar("R")
-F = TypeVar("F", bound=Callable[..., Any])
-
 # numba's own annotations leave out the options and settings that are used here.
-_config: Any = numba.config
 _njit: Any = numba.njit
 _Omitted: Any = Omitted
+_Function: Any = FunctionType  # takes the namespace as it is
 _INTERNAL, _ENTRY = pipelines()
-
-OPEN_INTERNALS = bool(os.environ.get("POLYCNC_OPEN_INTERNALS"))
-"""Whether Python may call functions that are not entries: tests may."""
+_making = threading.RLock()
 
 
 class _Entry(CPUDispatcher):
     """A compiled function that Python may call, and that is kept on disk."""
 
     _cache: ContentCache
-    _inner: Any
-    _steps: Callable[..., int] | None = None
-    _spared: Callable[..., int] | None = None
-    _plain: PlainEntry | None = None
+    _mark: Any
 
     def _compile_for_args(self, *args: Any, **kws: Any) -> Any:
         """Return what is called with these arguments, of types that are not loaded: plain Python for little work."""
         numbas: Any = super()
-        values = values_of(args)
-        if not ALLOWANCE.take(lambda: 1 if self._steps is None else self._steps(*values)):
+        values = tuple(_values_of(args))
+        if not ALLOWANCE.take(lambda: self._mark.wanted(values)):
             return numbas._compile_for_args(*args, **kws)
-        if self._plain is None:
-            types = tuple(map(self._type_of, args))
-            if self._cache.is_kept(types, self.targetctx):
-                return numbas._compile_for_args(*args, **kws)
-            self._plain = PlainEntry(self._inner)
-        return functools.partial(self._do_plainly, self._plain, values)
+        if self._cache.is_kept(tuple(map(self._type_of, args)), self.targetctx):
+            return numbas._compile_for_args(*args, **kws)
+        return functools.partial(self._do_plainly, values)
 
-    def _do_plainly(self, plain: PlainEntry, values: list[Any], *_: object) -> object:
-        result = plain(*values)
-        if self._spared is not None:
-            ALLOWANCE.give_back(self._spared(result, *values))
-        return result
+    def _do_plainly(self, values: tuple[Any, ...], *_: object) -> object:
+        return self._mark.plainly(values)
 
     def _type_of(self, argument: Any) -> Any:
         if isinstance(argument, OmittedArg):
@@ -74,120 +63,108 @@ class _Entry(CPUDispatcher):
             finally:
                 self._cache.release()
 
-    def get_call_template(self, args: Any, kws: Any) -> Any:
-        """Let compiled callers call the internal function, without the detour."""
-        return self._inner.get_call_template(args, kws)
 
-    def get_overload(self, sig: Any) -> Any:
-        """Return what compiled callers call."""
-        return self._inner.get_overload(sig)
+class _Detached(CPUDispatcher):
+    """A function that is called through its address alone, and that is kept on disk."""
+
+    _cache: ContentCache
+
+    def compile(self, sig: Any) -> Any:
+        """Load or compile the function for these types of arguments."""
+        with global_compiler_lock:
+            try:
+                return super().compile(tuple(by_reference(each) for each in sig))
+            finally:
+                self._cache.release()
 
 
 class _Internal(CPUDispatcher):
-    """A compiled function without a wrapper: numba would crash if Python called it."""
+    """A compiled function without a wrapper, for compiled callers."""
 
     _compiler: Any
-    _twin: Callable[..., object] | None = None
 
     def get_call_template(self, args: Any, kws: Any) -> Any:
         """Resolve a call by a compiled function: it passes states by reference."""
         args = self._compiler.fold_argument_types(args, kws)[1]
         return super().get_call_template(tuple(map(by_reference, args)), {})
 
-    def __call__(self, *args: object, **kwargs: object) -> object:
-        if not OPEN_INTERNALS:
-            raise TypeError(
-                f"{self.py_func.__name__} is internal to compiled code: decorate it with `entry`, "
-                "or set POLYCNC_OPEN_INTERNALS=1 in tests"
-            )
-        if self._twin is None:  # so that the functions that users run are the same with and without tests
-            self._twin = _as_entry(self)
-        return self._twin(*args, **kwargs)
+
+def _values_of(arguments: Sequence[object]) -> list[Any]:
+    """Return arguments as numba hands them on, with the defaults in their places."""
+    return [each.value if isinstance(each, OmittedArg) else each for each in arguments]
 
 
-_entries: dict[str, _Entry] = {}  # by "module.name"
+def make_entry(mark: Mark) -> None:
+    """Make what takes the arguments as they come, and passes states on by reference."""
+    _make_detour(mark, _Entry)
 
 
-def entries() -> list[tuple[str, _Entry]]:
-    """Return "module.name" and dispatcher of the entries of all modules imported so far."""
-    return sorted(_entries.items())
+def make_detached(mark: Mark) -> None:
+    """Make what is called through its address, with the numbers of `Ready`."""
+    _make_detour(mark, _Detached, no_cpython_wrapper=True, no_cfunc_wrapper=True)
 
 
-def versions() -> list[str]:
-    """Return, sorted, name and content of the entries of all modules imported so far."""
-    return sorted(each._cache.version() for each in _entries.values())
+def _make_detour(mark: Mark, kind: type, **options: object) -> None:
+    with _making:
+        if mark.dispatcher is not None:
+            return
+        function: Any = mark.py_func
+        names = ", ".join(inspect.signature(function).parameters)
+        namespace: dict[str, Any] = {"__name__": function.__module__}
+        exec(f"def entry({names}):\n    return internal({names})\n", namespace)
+        detour = namespace["entry"]
+        detour.__defaults__ = function.__defaults__
+        functools.update_wrapper(detour, function)
+        made: Any = _njit(error_model="numpy", fastmath=False, _nrt=mark.counted, **options, **_ENTRY)(detour)
+        made.__class__ = kind
+        made._mark = mark
+        # What is called is made when it has to be compiled: a kept entry has all of it.
+        missing = functools.partial(_set_internal, namespace, mark)
+        made._cache = ContentCache(mark, kind.__name__, missing)
+        mark.dispatcher = made
 
 
-def compiled(function: Callable[P, R]) -> Callable[P, R]:
-    """Compile `function` for compiled callers; IEEE arithmetic, so it equals its uncompiled self exactly.
-
-    Python cannot call it: the wrapper for that costs more compile time than most functions do (see `entry`).
-    It cannot allocate arrays: without numba's reference counts a control cycle takes a tenth of the time (see
-    `allocating`).
-    """
-    return _internal(function, counted=False)
+def _set_internal(namespace: dict[str, Any], mark: Mark) -> None:
+    with _making:
+        namespace["internal"] = _internal(mark.inner)
 
 
-def allocating(function: Callable[P, R]) -> Callable[P, R]:
-    """Compile `function` for compiled callers, as `compiled` does, but allowed to allocate arrays."""
-    return _internal(function, counted=True)
+def _internal(mark: Mark) -> Any:
+    """Return the dispatcher of an internal function, in a namespace where those that it calls have theirs."""
+    if mark.dispatcher is None:
+        # A state is hundreds of words, which a real call puts on the stack one by one. That costs more than most
+        # functions do, so they all become part of their callers. It changes no result.
+        options = {
+            "no_cpython_wrapper": True,
+            "no_cfunc_wrapper": True,
+            "forceinline": True,
+            **_INTERNAL,
+        }
+        written: Any = mark.py_func
+        namespace: dict[str, Any] = {}
+        function = _in_namespace(written, namespace)
+        mark.dispatcher = _njit(error_model="numpy", fastmath=False, _nrt=mark.counted, **options)(function)
+        mark.dispatcher.__class__ = _Internal
+        # Afterwards, since a function may call itself.
+        namespace.update(_names(written.__code__, written.__globals__))
+    return mark.dispatcher
 
 
-@overload
-def entry(function: Callable[P, R]) -> Callable[P, R]: ...
-@overload
-def entry(*, steps: Callable[..., int], spared: Callable[..., int] | None = None) -> Callable[[F], F]: ...
-def entry(function: Any = None, *, steps: Any = None, spared: Any = None) -> Any:
-    """Compile `function` for Python and compiled callers, and keep the result on disk.
-
-    `steps` tells from the arguments of a call how many steps it may take, of some 20 µs uncompiled each; without it
-    every call is one. `spared` tells from the result and the arguments how many of them it did not take. Few steps are
-    not worth compiling (see `_plain`).
-    """
-    if function is None:
-        return functools.partial(entry, steps=steps, spared=spared)
-    internal = _internal(function, counted=True)
-    if not isinstance(internal, _Internal):
-        return internal
-    found = _as_entry(internal)
-    found._steps, found._spared = steps, spared
-    register_entry(function, found)
-    return found
+def _in_namespace(written: Any, namespace: dict[str, Any]) -> Callable[..., Any]:
+    function = _Function(
+        written.__code__, namespace, written.__name__, written.__defaults__, written.__closure__
+    )
+    functools.update_wrapper(function, written)
+    function.__kwdefaults__ = written.__kwdefaults__
+    return function  # type: ignore[no-any-return]
 
 
-def _internal(function: Callable[P, R], *, counted: bool) -> Callable[P, R]:
-    # A state is hundreds of words, which a real call puts on the stack one by one. That costs more than most
-    # functions do, so they all become part of their callers. It changes no result.
-    options = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True, "forceinline": True, **_INTERNAL}
-    dispatcher = _njit(error_model="numpy", fastmath=False, _nrt=counted, **options)(function)
-    if not _config.DISABLE_JIT:
-        dispatcher.__class__ = _Internal
-    return cast("Callable[P, R]", dispatcher)
+def _names(code: CodeType, given: dict[str, Any]) -> dict[str, Any]:
+    names = {"__name__", *(name for each in codes(code) for name in each.co_names)}
+    return {name: _for_numba(given[name]) for name in names if name in given}
 
 
-def _as_entry(internal: _Internal) -> _Entry:
-    """Make what Python calls: it takes the arguments as they come, and passes states on by reference."""
-    dispatcher = as_detour(internal, _Entry)
-    dispatcher._inner = internal
-    return cast("_Entry", dispatcher)
-
-
-def as_detour(internal: Any, kind: type, **options: object) -> Any:
-    """Return a kept function of this kind that does nothing but call an internal one."""
-    function = internal.py_func
-    names = ", ".join(inspect.signature(function).parameters)
-    namespace: dict[str, Any] = {"__name__": function.__module__, "internal": internal}
-    exec(f"def entry({names}):\n    return internal({names})\n", namespace)
-    detour = namespace["entry"]
-    detour.__defaults__ = function.__defaults__
-    functools.update_wrapper(detour, function)
-    counted = internal.targetoptions["_nrt"]
-    dispatcher = _njit(error_model="numpy", fastmath=False, _nrt=counted, **options, **_ENTRY)(detour)
-    dispatcher.__class__ = kind
-    dispatcher._cache = ContentCache(dispatcher)
-    return dispatcher
-
-
-def register_entry(function: Callable[..., object], dispatcher: Any) -> None:
-    """Have a kept function among those that are compiled beforehand."""
-    _entries[f"{function.__module__}.{function.__qualname__}"] = dispatcher
+def _for_numba(value: Any) -> Any:
+    if isinstance(value, Mark):
+        return _internal(value.inner)
+    return call if value is call_in_python else value

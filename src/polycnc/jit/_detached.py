@@ -10,40 +10,11 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from typing import Any
 
-import numba
 import numpy as np
 import numpy.typing as npt
-from numba.core import types
-from numba.core.compiler_lock import global_compiler_lock
-from numba.core.registry import CPUDispatcher
-from numba.extending import intrinsic
 
-from polycnc.jit._cache import ContentCache
-from polycnc.jit._compile import as_detour, register_entry
-from polycnc.jit._reference import by_reference
-
-# numba's own annotations leave these out.
-_config: Any = numba.config
-_typeof: Any = numba.typeof
-_types: Any = types
-_intrinsic: Any = intrinsic
-_lock: Any = global_compiler_lock
-
-_known: list[Any] = [None]  # functions and states by number, where nothing is compiled
-
-
-class _Detached(CPUDispatcher):
-    """A function that is called through its address alone, and that is kept on disk."""
-
-    _cache: ContentCache
-
-    def compile(self, sig: Any) -> Any:
-        """Load or compile the function for these types of arguments."""
-        with _lock:
-            try:
-                return super().compile(tuple(by_reference(each) for each in sig))
-            finally:
-                self._cache.release()
+from polycnc.jit._entry import register
+from polycnc.jit._marks import DISABLED, Kept, call_in_python, number_of
 
 
 class Ready:
@@ -54,16 +25,27 @@ class Ready:
         self._held = places, states
 
 
+class _Apart(Kept):
+    """What calls an internal function at an address of its own."""
+
+    def compiled(self) -> Any:
+        """Return what numba makes of the function, which loads numba."""
+        if self.dispatcher is None:
+            from polycnc.jit._compile import make_detached
+
+            make_detached(self)
+        return self.dispatcher
+
+
 class Detached:
     """A function of named tuples of arrays, and integers after them, that returns an integer."""
 
     def __init__(self, function: Any) -> None:
         self._function = function
         self._addresses: dict[Any, int] = {}
-        self._dispatcher: Any = None
-        if not _config.DISABLE_JIT:
-            self._dispatcher = as_detour(function, _Detached, no_cpython_wrapper=True, no_cfunc_wrapper=True)
-            register_entry(self._dispatcher.py_func, self._dispatcher)
+        if not DISABLED:
+            self._mark = _Apart(function)
+            register(self._mark)
 
     def ready(self, *states: object, numbers: int) -> Ready:
         """Make calls with these states, and so many integers, ready; the arrays of the states stay where they are.
@@ -72,24 +54,22 @@ class Detached:
             TypeError: A state has something other than arrays in it.
         """
         places = [np.array(list(_words(each)), np.int64) for each in states]
-        if self._dispatcher is None:
+        if DISABLED:
             ready = Ready(0, [], states)
-            ready.numbers = np.array([_number(each) for each in (self._function, *states)], np.int64)
+            ready.numbers = np.array([number_of(each) for each in (self._function, *states)], np.int64)
             return ready
-        key = (*map(_typeof, states), *[_types.int64] * numbers)
+        return Ready(self._address(states, numbers), places, states)
+
+    def _address(self, states: tuple[object, ...], numbers: int) -> int:
+        from polycnc.jit._reference import by_reference, types_of
+
+        key = types_of(states, numbers)
         if key not in self._addresses:
-            self._dispatcher.compile(key)
-            result = self._dispatcher.overloads[tuple(map(by_reference, key))]
+            dispatcher = self._mark.compiled()
+            dispatcher.compile(key)
+            result = dispatcher.overloads[tuple(map(by_reference, key))]
             self._addresses[key] = result.library.get_pointer_to_function(result.fndesc.llvm_func_name)
-        return Ready(self._addresses[key], places, states)
-
-
-def _number(each: object) -> int:
-    for number, known in enumerate(_known):
-        if known is each:
-            return number
-    _known.append(each)
-    return len(_known) - 1
+        return self._addresses[key]
 
 
 def _words(state: Any) -> Iterator[int]:
@@ -108,26 +88,5 @@ def detached(function: Callable[..., int]) -> Detached:
     return Detached(function)
 
 
-def _call(typing: Any, address: Any, places: Any, numbers: Any) -> Any:
-    kinds = (*[_types.voidptr] * len(places), *numbers)
-
-    def generate(context: Any, builder: Any, signature: Any, values: Any) -> Any:
-        convention = context.call_conv
-        function = convention.get_function_type(_types.int64, kinds).as_pointer()
-        pointer = context.get_value_type(_types.voidptr)
-        passed = [builder.inttoptr(builder.extract_value(values[1], n), pointer) for n in range(len(places))]
-        passed += [builder.extract_value(values[2], n) for n in range(len(numbers))]
-        called = builder.inttoptr(values[0], function)
-        return convention.call_function(builder, called, _types.int64, kinds, passed)[1]
-
-    return _types.int64(address, places, numbers), generate
-
-
-def _call_in_python(address: int, places: tuple[int, ...], numbers: tuple[int, ...]) -> int:
-    return int(_known[address](*(_known[place] for place in places), *numbers))
-
-
-call_at: Callable[[int, tuple[int, ...], tuple[int, ...]], int] = (
-    _call_in_python if _config.DISABLE_JIT else _intrinsic(_call)
-)
+call_at: Callable[[int, tuple[int, ...], tuple[int, ...]], int] = call_in_python
 """Call a detached function with the numbers of `Ready`, and integers; for compiled code."""

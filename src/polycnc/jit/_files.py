@@ -166,3 +166,7 @@ class Lock:
             with contextlib.suppress(OSError):
                 _unlock(descriptor)
             os.close(descriptor)
+
+
+FILES = Files(CACHE_FOLDER)
+"""The files of this user."""

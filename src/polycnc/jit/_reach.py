@@ -13,9 +13,8 @@ from types import BuiltinFunctionType, CodeType, FunctionType, ModuleType
 from typing import Any, TypeAlias
 
 import numpy as np
-from numba.core import types as numba_types
-from numba.core.extending import _Intrinsic
-from numba.core.registry import CPUDispatcher
+
+from polycnc.jit._marks import Mark
 
 _OURS = __name__.partition(".")[0]
 _MISSING = object()
@@ -34,32 +33,32 @@ class Fingerprints:
         self._known: dict[int, tuple[Any, str]] = {}
         self._open: list[Any] = []
 
-    def of(self, dispatcher: Any) -> str:
+    def of(self, mark: Any) -> str:
         """Return 32 hexadecimal digits for the code of a compiled function and of all that it reaches.
 
         Raises:
             NotKnownError: The code refers to a value whose content cannot be told.
         """
-        known = self._known.get(id(dispatcher))
+        mark = mark.inner
+        known = self._known.get(id(mark))
         if known is not None:
             return known[1]
-        if self._open and self._open[-1] is dispatcher:
+        if self._open and self._open[-1] is mark:
             return "itself"
-        if any(each is dispatcher for each in self._open):
-            raise NotKnownError(f"{dispatcher.py_func.__qualname__} calls itself by way of another function")
-        self._open.append(dispatcher)
+        if any(each is mark for each in self._open):
+            raise NotKnownError(f"{mark.py_func.__qualname__} calls itself by way of another function")
+        self._open.append(mark)
         try:
-            lines = [repr(sorted((key, repr(value)) for key, value in dispatcher.targetoptions.items()))]
-            lines += _function(dispatcher.py_func, self.of)
+            lines = [f"counted {mark.counted}", *_function(mark.py_func, self.of)]
         except NotKnownError as error:
-            error.add_note(f"in {dispatcher.py_func.__module__}.{dispatcher.py_func.__qualname__}")
+            error.add_note(f"in {mark.py_func.__module__}.{mark.py_func.__qualname__}")
             raise
         finally:
             self._open.pop()
         digest = hashlib.blake2b(
             "\n".join(lines).encode("utf-8", "surrogatepass"), digest_size=16
         ).hexdigest()
-        self._known[id(dispatcher)] = dispatcher, digest
+        self._known[id(mark)] = mark, digest
         return digest
 
 
@@ -68,10 +67,10 @@ def _function(function: Any, follow: Follow) -> Iterator[str]:
     yield _value((function.__defaults__, function.__kwdefaults__), follow)
     for cell in function.__closure__ or ():
         yield _value(cell.cell_contents, follow)
-    codes = list(_codes(function.__code__))
-    for code in codes:
+    reached = list(codes(function.__code__))
+    for code in reached:
         yield from _code(code, function.__doc__, follow)
-    names = sorted({name for code in codes for name in code.co_names})
+    names = sorted({name for code in reached for name in code.co_names})
     for name in names:
         value = function.__globals__.get(name, _MISSING)
         if value is _MISSING:
@@ -86,11 +85,12 @@ def _is_ours(module: str) -> bool:
     return module.partition(".")[0] == _OURS
 
 
-def _codes(code: CodeType) -> Iterator[CodeType]:
+def codes(code: CodeType) -> Iterator[CodeType]:
+    """Yield a code and those within it."""
     yield code
     for constant in code.co_consts:
         if isinstance(constant, CodeType):
-            yield from _codes(constant)
+            yield from codes(constant)
 
 
 def _code(code: CodeType, doc: str | None, follow: Follow) -> Iterator[str]:
@@ -161,15 +161,14 @@ def _plain_function(value: Any, follow: Follow) -> str:
 
 _TEXTS: tuple[tuple[tuple[type, ...], Callable[[Any, Follow], str]], ...] = (
     ((enum.Enum,), _member),
-    ((CPUDispatcher,), lambda value, follow: follow(value)),
+    ((Mark,), lambda value, follow: follow(value)),
     ((bool, int, float, complex, str, bytes, type(None), type(Ellipsis)), _plain),
     ((np.ndarray, np.generic), _array),
     ((np.dtype,), _dtype),
     ((tuple, list), _ordered),
     ((frozenset, set), _unordered),
     ((dict,), _mapping),
-    ((numba_types.Type,), _plain),
     ((type,), _class),
-    ((BuiltinFunctionType, ModuleType, np.ufunc, _Intrinsic), _named),
+    ((BuiltinFunctionType, ModuleType, np.ufunc), _named),
     ((FunctionType,), _plain_function),
 )

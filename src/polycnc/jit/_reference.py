@@ -10,12 +10,15 @@ import hashlib
 from collections.abc import Iterator
 from typing import Any
 
+import numba
 from numba.core import cgutils, types
 from numba.core.imputils import impl_ret_borrowed, lower_cast, lower_getattr_generic
 from numba.core.typing.templates import AttributeTemplate, infer_getattr
 from numba.extending import models, register_model
 
 # numba's own annotations leave these out.
+_types: Any = types
+_typeof: Any = numba.typeof
 _Type: Any = types.Type
 _cgutils: Any = cgutils
 _lower_cast: Any = lower_cast
@@ -64,6 +67,11 @@ def by_reference(argument: Any) -> Any:
     if argument not in _known:
         _known[argument] = StateRef(argument)
     return _known[argument]
+
+
+def types_of(states: tuple[object, ...], numbers: int) -> tuple[Any, ...]:
+    """Return the types of states and of so many integers after them."""
+    return (*map(_typeof, states), *[_types.int64] * numbers)
 
 
 @register_model(StateRef)

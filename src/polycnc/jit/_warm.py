@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 from numba.core.errors import TypingError
 
-from polycnc.jit._compile import entries
+from polycnc.jit._entry import entries
 
 _typeof: Any = numba.typeof  # not annotated
 _PLAIN: dict[object, object] = {
@@ -30,12 +30,8 @@ def _with_members(state: object) -> Iterator[object]:
             yield from _with_members(member)
 
 
-def compile_entries(package: str, states: Iterable[object], progress: Callable[[str, float], None]) -> int:
-    """Compile, or load, the entries of a package whose arguments are numbers and named tuples like `states`.
-
-    The package must have been imported. `progress` is called with the name of each entry and the part that is done.
-    Returns how many entries were left out, because they take something else.
-    """
+def compile_all(package: str, states: Iterable[object], progress: Callable[[str, float], None]) -> int:
+    """Do what `compile_entries` says."""
     types: dict[object, object] = {kind: _typeof(value) for kind, value in _PLAIN.items()}
     for state in states:
         for member in _with_members(state):
@@ -46,7 +42,7 @@ def compile_entries(package: str, states: Iterable[object], progress: Callable[[
     for number, each in enumerate(wanted):
         progress(each.py_func.__name__, number / len(wanted))
         try:
-            each.compile(_signature(each.py_func, types))
+            each.compiled().compile(_signature(each.py_func, types))
         except TypingError:  # not known what it takes, or not a row after all
             left_out += 1
     return left_out

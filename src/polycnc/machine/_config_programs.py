@@ -25,7 +25,10 @@ class ProgramsConfig(StrictModel):
         description="File with the parameters that programs begin with, number and value a line; relative to the "
         "machine file.",
     )
-    parameters_inch: bool = Field(default=False, description="Lengths in that file are inches, not mm.")
+    parameters_inch: bool = Field(
+        default=False,
+        description="Offsets and tools in parameters, and lengths in that file, are inches, not mm.",
+    )
     settings: Annotated[dict[str, MostNames], Field(max_length=10_000)] = Field(
         default={},
         description="Numbers that programs read by section and name, like `TOOLSENSOR = { X = 12.5 }`.",

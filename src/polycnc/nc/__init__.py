@@ -16,7 +16,7 @@ from polycnc.nc.dialect._dialect import DEFAULT_DIALECT, DIALECTS, Dialect, load
 from polycnc.nc.dialect._guess import ChosenDialect, choose_dialect, dialect_for
 from polycnc.nc.modal._actions import Action, Family, Group, MAction
 from polycnc.nc.modal._modal_snapshot import Spindle
-from polycnc.nc.modal._placement import Placement
+from polycnc.nc.modal._placement import Placement, Shifts
 from polycnc.nc.modal._suppressed import Suppressed
 from polycnc.nc.records._block_records import (
     CONTEXT_SHIFT,
@@ -90,6 +90,7 @@ __all__ = [
     "Probe",
     "ProgramText",
     "Returning",
+    "Shifts",
     "SourceItem",
     "Spindle",
     "Statement",

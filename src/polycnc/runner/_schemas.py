@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
-from polycnc.errors import UsageError
+from polycnc.errors import UsageError, did_you_mean
 from polycnc.machine import MachineConfig
 from polycnc.nc import Dialect
 
@@ -294,6 +294,9 @@ def json_schema(name: str) -> Schema:
         UsageError: there is no such schema.
     """
     if name not in _SCHEMAS:
-        raise UsageError(f"there is no schema '{name}'", hint=f"Schemas are: {', '.join(SCHEMAS)}.")
+        raise UsageError(
+            f"there is no schema '{name}'",
+            hint=f"{did_you_mean(name, SCHEMAS)}Schemas are: {', '.join(SCHEMAS)}.",
+        )
     title, make = _SCHEMAS[name]
     return {"$schema": _DRAFT, **make(), "title": title}

@@ -6,7 +6,7 @@ import ctypes
 from typing import Any
 
 from polycnc.controllers.apci import pcap
-from polycnc.controllers.apci.board._codes import InitCode, Status, Success
+from polycnc.controllers.apci.board._codes import BootCode, InitCode, Status, Success
 from polycnc.controllers.apci.board._declared import HEADER
 from polycnc.controllers.apci.library._session import UNKNOWN_ERROR
 from polycnc.controllers.library import Element, Table, lay_out
@@ -24,8 +24,7 @@ TSRPX: Any = lay_out(
 )
 """A TSRP with the values that functions use and it has no place for; see `MCUG3_EXTEND` of the header."""
 _WITHOUT_A_PLACE = ("rdaux", "wraux", "rdlp", "wrlp", "rdlpndx", "wrlpndx", "rddv", "rdsdec", "wrsdec")
-_SERVED = "a served board is booted: booting it anew would make another one than the one that is served"
-_ROUTINE = "the library calls no routine of the program"
+_SERVED = "booting a served board would make another one than the one that is served; it answers 202"
 
 _DECLARATIONS = """\
 typedef void(PC_CALL *InterruptRoutine)(int lines);
@@ -85,12 +84,13 @@ MCUG3 = CLibrary(
         **{(name, "spdbuf"): "(int64_t)size * 8" for name in ("spd", "spda", "spdr")},
         ("getEnvStr", "EnvStr"): "sizeof(CppString)",
     },
-    failures={"rdSampleTime": Success.FAILED, "rdslsp": Success.FAILED},
-    left_out={
-        "BootFile": _SERVED,
-        "MCUG3_SetBoardIntRoutine": _ROUTINE,
-        "MCUG3_ResetBoardIntRoutine": _ROUTINE,
+    failures={
+        "rdSampleTime": Success.FAILED,
+        "rdslsp": Success.FAILED,
+        "BootFile": BootCode.DEVICE_ADDRESSES,
     },
+    left_out={"BootFile": _SERVED},
+    interrupts=("MCUG3_SetBoardIntRoutine", "MCUG3_ResetBoardIntRoutine"),
 )
 """Ruling: a null pointer is an unknown error, 1; the selected axes' records lie in the program at their numbers."""
 

@@ -36,6 +36,8 @@ from polycnc.nc.cpl import (
 
 _COMPUTING_S, _COMPUTING_SHARE = 0.2, 0.02
 """Of a loop that only computes: a second of processor time, or 4 million rounds."""
+_WRITING_SHARE = 0.5
+"""Of a loop that writes and shows, and asks nobody: some seconds of processor time, or 50,000 outputs."""
 _WORD = re.compile(
     r"(?P<letter>[A-Za-z]) *(?:(?P<extension>[0-9]{1,2}) *= *)?(?P<value>[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+))"
 )
@@ -212,7 +214,7 @@ class ChannelHost:
         """Return the error of a program that has looped for `cycles` cycles of standstill, None if it may go on.
 
         It must not come back to a state in which it was, nor loop for longer than `limit_s`; one that only computes may
-        for a 50th of that, or 0.2 s.
+        for a 50th of that, or 0.2 s, and one that also writes files and shows texts for half of it.
         """
         if not cycles:
             self.language.moves_on()
@@ -222,6 +224,8 @@ class ChannelHost:
             return self._error_here("the program loops without end", hint)
         if self.language.only_computes():
             limit_s = min(limit_s, max(_COMPUTING_S, _COMPUTING_SHARE * limit_s))
+        elif self.language.asks_nobody():
+            limit_s = min(limit_s, max(_COMPUTING_S, _WRITING_SHARE * limit_s))
         if cycles * self._clock.cycle_s <= limit_s:
             return None
         hint = "put a block or a WAIT into the loop, or raise the limit: --loop-limit, loop_limit_s"

@@ -10,6 +10,7 @@ import numpy.typing as npt
 from polycnc.cnc import ProgramRun
 from polycnc.controllers.bosch._axes import SystemAxes
 from polycnc.kernel import PIDF
+from polycnc.nc import ModalWords
 from polycnc.nc.cpl import OMITTED, Fault
 
 Floats = npt.NDArray[np.float64]
@@ -76,7 +77,9 @@ class Positions:
         owner = self._axes.channel_of(physical)
         run = None if owner is None else self._runs(owner)
         setpoint = self._run.machine.state.setpoint
-        return workpiece(run, setpoint)[index] / self._scale(physical)
+        return workpiece(None if run is None else executed_words(run), setpoint)[index] / self._scale(
+            physical
+        )
 
     # ------------------------------------------------------------------ measured
 
@@ -122,13 +125,17 @@ class Positions:
         return float(self._run.channel.state.modal.scale[self._axes.index(physical)])
 
 
-def workpiece(run: ProgramRun | None, machine: Floats) -> list[float]:
-    """Return the workpiece coordinates of a machine position, in the channel of a run."""
-    if run is None:
+def executed_words(run: ProgramRun) -> ModalWords:
+    """Return the words of the executed block; before the first one what the program begins with."""
+    if (words := run.reading.modal) is not None:
+        return words
+    return run.channel.records.words(run.program, run.channel.state.snapshot())
+
+
+def workpiece(words: ModalWords | None, machine: Floats) -> list[float]:
+    """Return the workpiece coordinates of a machine position with the executed block's words."""
+    if words is None:
         return list(map(float, machine))
-    state = run.channel.state
-    coordinates = state.coordinates
-    found = (machine - state.zero_offset - state.tool_offset - coordinates.outer).tolist()
-    if (turn := coordinates.turn) is not None:
-        found[turn.p], found[turn.q] = turn.turned(found[turn.p], found[turn.q], -1.0)
-    return [float(each) for each in found]
+    shifts = words.shifts
+    found = machine - np.array(words.zero) + np.array(shifts.own or 0.0)
+    return shifts.back([float(each) for each in found])

@@ -9,9 +9,8 @@ import numpy as np
 
 from polycnc.cnc import AxisStatus, ProgramRun, RunState
 from polycnc.controllers.bosch._axes import SystemAxes
-from polycnc.controllers.bosch._channel_data import ChannelData
 from polycnc.controllers.bosch._channel_ports import ChannelPorts
-from polycnc.controllers.bosch._positions import workpiece
+from polycnc.controllers.bosch._positions import executed_words, workpiece
 from polycnc.controllers.bosch.ncs import (
     Axis,
     Channel,
@@ -126,16 +125,15 @@ class Shown:
         self,
         axes: SystemAxes,
         channels: ChannelPorts,
-        data: Callable[[int], ChannelData],
         tables: Callable[[], tuple[ZeroShifts, ToolCompensations]],
         programs: Mapping[int, Programs],
     ) -> None:
         self._programs = programs
         self._axes = axes
         self._channels = channels
-        self._data = data
         self._tables = tables
         self._tags: dict[int, int] = {}
+        self._unmoved = (0.0,) * len(axes.names)
         self._now: Mapping[str, AxisStatus] | None = None
         self._blocks: dict[int, tuple[ModalWords, list[float]]] = {}
         self._read = _Axes(axes.numbers, self._axis_now)
@@ -197,7 +195,7 @@ class Shown:
         shown.external_shift = sum(
             shifts.shift_mm(int(code[1:])).get(name, 0.0) for code in words.placement.offsets
         )
-        shown.preset = -float(run.channel.state.coordinates.shift[index])
+        shown.preset = -(words.shifts.preset or self._unmoved)[index]
         shown.axis_coordinate = setpoint - shown.shift
         shown.end = ends[index] - shown.shift
         return shown
@@ -205,17 +203,13 @@ class Shown:
     def _block(self, run: ProgramRun, number: int) -> tuple[ModalWords, list[float]]:
         """Return words and end of the executed block of a channel, found once in a cycle."""
         if number not in self._blocks:
-            self._blocks[number] = self._words(run, number), self._ends(run)
+            self._blocks[number] = executed_words(run), self._ends(run)
         return self._blocks[number]
 
     def _ends(self, run: ProgramRun) -> list[float]:
         """Return where the executed block ends (machine coordinates)."""
         to_go = list(run.reading.distance_to_go.values())
         return [each + left for each, left in zip(run.reading.position.values(), to_go, strict=True)]
-
-    def _words(self, run: ProgramRun, number: int) -> ModalWords:
-        """Return the words of the executed block; before the first one what the program begins with."""
-        return self._data(number).programmed() if run.reading.modal is None else run.reading.modal
 
     def _channel(self, shown: Channel, number: int) -> None:
         run = self._channels.run(number)
@@ -307,9 +301,9 @@ class Shown:
 
     def _coordinates(self, run: ProgramRun, number: int) -> list[Coordinate]:
         axes, state = self._axes, run.machine.state
-        now = workpiece(run, state.setpoint)
-        _, ends = self._block(run, number)
-        end_at = workpiece(run, np.array(ends))
+        words, ends = self._block(run, number)
+        now = workpiece(words, state.setpoint)
+        end_at = workpiece(words, np.array(ends))
         to_go = list(run.reading.distance_to_go.values())
         config = run.machine.config.axes
         found = []

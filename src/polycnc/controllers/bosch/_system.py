@@ -124,9 +124,7 @@ class BoschSystem:
             number: ChannelData(self.axes, number, self.channels, int(str(self.parameter(LANGUAGE))))
             for number in self.axes.channels
         }
-        self.shown = Shown(
-            self.axes, self.channels, self.data.__getitem__, lambda: (self.shifts, self.tools), self.programs
-        )
+        self.shown = Shown(self.axes, self.channels, lambda: (self.shifts, self.tools), self.programs)
 
     # ------------------------------------------------------------------ functions of a channel
 

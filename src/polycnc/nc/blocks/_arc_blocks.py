@@ -72,6 +72,7 @@ def arc(block: BlockContext, end: Point, clockwise: bool) -> Arc | None:
         raise block.problem(
             "an arc has both a radius R and a centre", "Write one of them.", block.words.first("R")
         )
+    _refuse_half(block, center)
     start = block.start
     frame = block.after.frame
     if frame.active:
@@ -97,6 +98,20 @@ def arc(block: BlockContext, end: Point, clockwise: bool) -> Arc | None:
     for passed, what in limits.points(made):
         limits.check(block, passed, what)
     return made
+
+
+def _refuse_half(block: BlockContext, center: dict[str, float]) -> None:
+    """Refuse an absolute centre of one word, where the dialect does."""
+    if (
+        not center
+        or "half a centre" not in block.dialect.refuses
+        or not block.after.modal.whole[ARC_ABSOLUTE]
+    ):
+        return
+    for letter in CENTER_LETTERS[int(block.after.modal.whole[PLANE])]:
+        if letter not in center:
+            word = block.words.first(*"IJK")
+            raise block.problem(f"an absolute centre (G90.1) without {letter}", "Write both.", word)
 
 
 def _center_words(block: BlockContext, plane: int) -> dict[str, float]:

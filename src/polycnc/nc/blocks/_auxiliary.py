@@ -6,9 +6,12 @@ motion of the block; then program stops and the program end. The power of a lase
 
 from __future__ import annotations
 
+import math
+import re
 from collections.abc import Sequence
 from dataclasses import replace
 
+from polycnc.errors import ProgramError
 from polycnc.nc.blocks import _feeds as feeds
 from polycnc.nc.blocks._block import BlockContext
 from polycnc.nc.blocks._channel_state import of_another_channel
@@ -41,7 +44,7 @@ _AFTER_MOTION = (MAction.PROGRAM_STOP, MAction.OPTIONAL_STOP, MAction.PROGRAM_EN
 _STOPS = {MAction.PROGRAM_STOP: Stop.PROGRAM, MAction.OPTIONAL_STOP: Stop.OPTIONAL}
 _DIRECTION = {**SPINDLE_SENSES, MAction.SPINDLE_ORIENT: 0}
 _PARAMETERS = "PQREL"
-"""What a function with words takes, in the order in which its event names them."""
+"""What a function with words takes where the dialect says nothing, in the order in which its event names them."""
 _WITH_SPEED = (*_DIRECTION, MAction.RIGID_TAP)
 _COOLANT = (MAction.COOLANT_MIST, MAction.COOLANT_FLOOD, MAction.COOLANT_OFF)
 _M_PER_FOOT = 12.0 * MM_PER_INCH / 1000.0
@@ -116,7 +119,7 @@ def stops(block: BlockContext) -> list[Wait]:
 def _clamps(block: BlockContext, speed: Word) -> bool:
     """Take over the highest speed of constant surface speed, which S is beside the setting of a position."""
     g = block.words.g.get(Group.NON_MODAL)
-    if g is None or g.action is not Action.SET_POSITION:
+    if g is None or g.action is not Action.SET_POSITION or block.dialect.d_limits_spindle:
         return False
     if speed.value <= 0.0:
         raise block.problem("the spindle's clamp is not above zero", "Write S above 0.", speed)
@@ -155,6 +158,12 @@ def _turn_turret(block: BlockContext, word: Word) -> Wait:
 
 
 def _set_mode(block: BlockContext, g: GWord, speed: Word | None) -> None:
+    if block.dialect.d_limits_spindle and g.value:
+        if speed is None:
+            raise _no_cutting_speed(block, g)
+        limit = block.words.take("D")
+        clamp = math.inf if limit is None else abs(limit.value)
+        block.after.spindle = replace(block.after.spindle, clamp=clamp)
     spindle = block.after.spindle
     surface_speed = bool(g.value)
     if surface_speed == spindle.surface_speed:
@@ -164,12 +173,15 @@ def _set_mode(block: BlockContext, g: GWord, speed: Word | None) -> None:
             f"G{g.code} on a machine with a laser", "Write the power as S, without G96.", g.word
         )
     if surface_speed and speed is None:
-        raise block.problem(
-            f"G{g.code} without a cutting speed", "Add S, in m/min (feet/min with inch words).", g.word
-        )
+        raise _no_cutting_speed(block, g)
     # Without S the spindle keeps the speed it has here.
     rpm = spindle.speed if surface_speed else feeds.rpm(block, block.start, block.start)
     block.after.spindle = replace(spindle, speed=rpm, surface_speed=surface_speed)
+
+
+def _no_cutting_speed(block: BlockContext, g: GWord) -> ProgramError:
+    hint = "Add S, in m/min (feet/min with inch words)."
+    return block.problem(f"G{g.code} without a cutting speed", hint, g.word)
 
 
 def _set_speed(block: BlockContext, word: Word) -> None:
@@ -208,24 +220,56 @@ def _function(block: BlockContext, m: MWord) -> tuple[Wait, ...]:
     return (_wait(block, m),)
 
 
+def _parameters(block: BlockContext, m: MWord) -> list[Word]:
+    """Take the words of a function.
+
+    Raises:
+        ProgramError: one that it needs is missing, or counts something and is not a whole number.
+    """
+    table = block.dialect.m_words
+    takes = table.get(str(m.code), table.get("other", _PARAMETERS))
+    words = []
+    for letter, needed in re.findall(r"([A-Z])(!?)", takes):
+        if (word := block.words.take(letter)) is not None:
+            words.append(word)
+            if needed and letter in "PE":
+                whole_number(word, "a number of an output", block.problem)
+        elif needed:
+            raise block.problem(f"M{m.code} without {letter}", f"Add {letter} and its number.", m.word)
+    return words
+
+
+def _change_tool(block: BlockContext, name: str) -> Wait:
+    """Take the selected tool; on some controls that stops the spindle."""
+    block.after.tool = block.after.selected_tool
+    tool_data(block, block.after.tool)
+    events: tuple[str, ...] = (f"{name} T{block.after.tool}",)
+    if block.dialect.tool_change_stops_spindle and block.after.spindle.direction:
+        block.after.spindle = replace(block.after.spindle, direction=0)
+        events = ("M5", *events)
+    return Wait(block.after.machine.times.tool_change_s, block.line, events)
+
+
+def _set_tool(block: BlockContext, m: MWord) -> Wait:
+    """Say which tool is in the spindle."""
+    number = block.words.take("Q")
+    if number is None:
+        raise block.problem(f"M{m.code} without Q", "Add Q and the number of the tool.", m.word)
+    block.after.tool = block.after.selected_tool = whole_number(number, "a tool number", block.problem)
+    tool_data(block, block.after.tool)
+    return Wait(block.after.machine.times.auxiliary_s, block.line, (f"M{m.code} Q{block.after.tool}",))
+
+
 def _wait(block: BlockContext, m: MWord) -> Wait:
     speed = block.speed
     times = block.after.machine.times
     name = f"M{m.code}"
     if m.action is MAction.TOOL_CHANGE:
-        block.after.tool = block.after.selected_tool
-        tool_data(block, block.after.tool)
-        return Wait(times.tool_change_s, block.line, (f"{name} T{block.after.tool}",))
+        return _change_tool(block, name)
     if m.action is MAction.SET_TOOL:
-        number = block.words.take("Q")
-        if number is None:
-            raise block.problem(f"{name} without Q", "Add Q and the number of the tool.", m.word)
-        block.after.tool = block.after.selected_tool = whole_number(number, "a tool number", block.problem)
-        tool_data(block, block.after.tool)
-        return Wait(times.auxiliary_s, block.line, (f"{name} Q{block.after.tool}",))
+        return _set_tool(block, m)
     if m.action is MAction.AUXILIARY_WORDS or m.action in _OUTPUTS:
-        words = [each for letter in _PARAMETERS if (each := block.words.take(letter)) is not None]
-        return Wait(times.auxiliary_s, block.line, (_with_words(name, words),))
+        return Wait(times.auxiliary_s, block.line, (_with_words(name, _parameters(block, m)),))
     if m.action is MAction.RIGID_TAP:
         turned = block.after.spindle.direction != 0
         block.after.rigid_tap = True
@@ -238,6 +282,8 @@ def _wait(block: BlockContext, m: MWord) -> Wait:
         changed = now != spindle or speed is not None
         block.after.spindle = now
         word = name if speed is None else f"{name} S{code_text(speed.value)}"
+        if str(m.code) in block.dialect.m_words:
+            word = _with_words(word, _parameters(block, m))
         return Wait(times.spindle_start_s if changed else 0.0, block.line, (word,))
     if m.action in _COOLANT:
         _switch_coolant(block, m)

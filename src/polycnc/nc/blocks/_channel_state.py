@@ -24,7 +24,7 @@ from polycnc.nc.modal._actions import Family
 from polycnc.nc.modal._frame import UNTURNED, Frame, Rotation
 from polycnc.nc.modal._modal import CHANGING, FEED_NUMBER, NO_AXIS, Modal, changing, copy_modal
 from polycnc.nc.modal._modal_snapshot import ModalSnapshot, Spindle
-from polycnc.nc.modal._placement import NO_PLACEMENT, Placement
+from polycnc.nc.modal._placement import NO_PLACEMENT, NO_SHIFTS, Placement
 
 
 @dataclass(frozen=True, slots=True)
@@ -32,7 +32,7 @@ class Cycle:
     """Hold the active drilling cycle (its action, empty: none; the G code that called it) and its words.
 
     Levels are those of the program; `initial` is where the drilling axis was when the first cycle began, in machine
-    coordinates.
+    coordinates. `last_dwell_s` is the last dwell of a cycle, which some controls keep.
     """
 
     action: str = ""
@@ -40,6 +40,7 @@ class Cycle:
     retract_to_initial: bool = True
     initial: float = 0.0
     words: CycleWords = field(default_factory=CycleWords)
+    last_dwell_s: float | None = None
 
 
 @dataclass
@@ -114,6 +115,7 @@ class ChannelState(Plain):
         self._memory = changing(modal)  # of the columns
         self.tables = ProgramTables(machine)
         self.coordinates = Coordinates.none(len(modal.position))
+        self._shifts = NO_SHIFTS
         self._tables_taken = self._tables_revision()
         self.compensation = RadiusCompensation()
         self.axis_names: Sequence[str] = machine.axis_names
@@ -139,6 +141,7 @@ class ChannelState(Plain):
     def place_zero(self, coordinates: Coordinates) -> None:
         """Put program zero where these shifts say."""
         self.coordinates = coordinates
+        self._shifts = coordinates.shifts()
         self._tables_taken = self._tables_revision()
         self.modal.offset[:] = coordinates.total(self.tables, self.modal)
 
@@ -194,7 +197,8 @@ class ChannelState(Plain):
     def leave_drilling(self) -> None:
         """Leave a drilling cycle, and forget its words."""
         if self.cycle.action:
-            self.cycle = Cycle(retract_to_initial=self.cycle.retract_to_initial)
+            old = self.cycle
+            self.cycle = Cycle(retract_to_initial=old.retract_to_initial, last_dwell_s=old.last_dwell_s)
             self.rigid_tap = False
         if self.mode is Family.DRILLING:
             self.mode = Family.MOVE
@@ -217,6 +221,7 @@ class ChannelState(Plain):
         for column, old in zip(self.modal[CHANGING], saved.modal, strict=True):
             column[...] = old
         self.coordinates = saved.coordinates
+        self._shifts = saved.coordinates.shifts()
         self.compensation = RadiusCompensation() if saved.compensation is None else saved.compensation.copy()
         self.__dict__.update(vars(saved.plain))
 
@@ -243,4 +248,5 @@ class ChannelState(Plain):
             self.length_tool,
             self.m_codes,
             self.placement,
+            self._shifts,
         )

@@ -59,12 +59,13 @@ class Leads(NamedTuple):
     """Say how compensation begins and ends.
 
     The lead-in may be an arc; any straight move after the cancellation is the lead-out; a straight lead-in ends
-    beside its own end, and the corner after it is one like others.
+    beside its own end, and the corner after it is one like others. A rapid move goes straight across an outside corner.
     """
 
     by_arc: bool = False
     leaves_at_once: bool = False
     beside_itself: bool = False
+    rapids_across: bool = False
 
 
 _STRAIGHT = Leads()
@@ -282,6 +283,8 @@ class RadiusCompensation:
         if self._leads.leaves_at_once and self._mode is _Mode.LEAVING and isinstance(item, Line):
             return self._leave(item, self._plane.end(item))
         if leg is None or isinstance(item, Wait):
+            if self._mode is _Mode.ENTERING:
+                _check_level(item, self._leads, self._offset)
             if self._pending:
                 self._hold.append(item)
                 return []
@@ -337,23 +340,21 @@ class RadiusCompensation:
         if self._pending and self._lead_in:
             self._emit_pending(start_offset(leg, self._offset), out)
         elif self._leg is not None and self._move is not None:
-            if self._pending:
-                self._corner(self._move, self._leg, item, leg, out)
-            else:
-                self._resume(self._move, self._leg, item, leg, out)
+            turn = self._corner if self._pending else self._resume
+            turn(self._move, self._leg, item, leg, out)
         self._move, self._leg, self._pending, self._lead_in = item, leg, True, False
         return out
 
     def _corner(self, before: Move, leg: Leg, after: Move, next_leg: Leg, out: list[QueueItem]) -> None:
         """Emit the pending move up to the corner, then what the corner itself needs."""
-        rapid = _is_rapid(before) and _is_rapid(after)
+        rapid, across = _rapid_corner(before, after, self._leads)
         joint = join(leg, next_leg, self._offset, min(self._meet_cosine, 0.0) if rapid else self._meet_cosine)
         if joint is None:
             raise refusal("no_intersection", after.line, tool=abs(self._offset))
         if joint.sweep_rad == 0.0:
             self._emit_pending(joint.end, out)
-        elif rapid:
-            joint = chamfer(leg, next_leg, joint)
+        elif rapid or across:
+            joint = chamfer(leg, next_leg, joint) if rapid else joint
             self._emit_pending(joint.end, out)
             self._straight(after, joint.start, out)
         else:
@@ -430,6 +431,18 @@ class RadiusCompensation:
         first, last = self._plane.point(after.start, start), self._plane.point(after.start, end)
         out.append(Line(first, last, after.feed, _is_rapid(after), False, after.line, after.tag))
         self._at = end
+
+
+def _rapid_corner(before: Move, after: Move, leads: Leads) -> tuple[bool, bool]:
+    """Tell whether a corner between rapid moves is cut off, and whether a rapid move goes straight across it."""
+    across = leads.rapids_across and _is_rapid(after)
+    return _is_rapid(before) and _is_rapid(after) and not across, across
+
+
+def _check_level(item: QueueItem, leads: Leads, offset: float) -> None:
+    """Refuse a lead-in without a way in the plane, where the lead-in ends beside itself."""
+    if leads.beside_itself and offset != 0.0 and isinstance(item, Line):
+        raise refusal("lead_in_short", item.line, tool=abs(offset))
 
 
 def _vanishes(travel_mm: float, line: int) -> bool:

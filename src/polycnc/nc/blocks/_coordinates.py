@@ -11,6 +11,7 @@ import numpy.typing as npt
 from polycnc.nc.blocks._tables import COMMON_OFFSET, ProgramTables
 from polycnc.nc.modal._frame import Rotation
 from polycnc.nc.modal._modal import Modal
+from polycnc.nc.modal._placement import NO_SHIFTS, Shifts
 
 Floats: TypeAlias = npt.NDArray[np.float64]
 
@@ -31,7 +32,8 @@ class Coordinates:
     `work` names the active work offset of each group, MACHINE_ZERO for none. `shift` is that of G92, which counts while
     `shifted` and is kept while not, `local` that of G52. `length_sign` is 1 or -1 while tool length compensation is
     active, else 0. `inner` are shifts of programmed positions besides, `outer` those of a workpiece that `turn` turns;
-    `external` names further offsets in force, `compensations` codes of further tool data.
+    `external` names further offsets in force, `compensations` codes of further tool data. `selected` is the first work
+    offset as it was when it was selected, where the table has been changed since and that waits for the next selection.
     """
 
     shift: Floats
@@ -45,6 +47,7 @@ class Coordinates:
     external: tuple[str, ...] = ()
     compensations: tuple[int, ...] = ()
     shifted: bool = False
+    selected: Floats | None = None
 
     @classmethod
     def none(cls, axes: int) -> Coordinates:
@@ -54,7 +57,12 @@ class Coordinates:
 
     def with_work_offset(self, group: int, name: str) -> Coordinates:
         """Return the same with work offset `name` (G54, ...) of a group; MACHINE_ZERO for none."""
-        return replace(self, work=(*self.work[:group], name, *self.work[group + 1 :]))
+        selected = self.selected if name == self.work[0] else None
+        return replace(self, work=(*self.work[:group], name, *self.work[group + 1 :]), selected=selected)
+
+    def first_offset(self, tables: ProgramTables) -> Floats:
+        """Return the first work offset in force."""
+        return np.array(tables.work_offset(self.work[0])) if self.selected is None else self.selected
 
     def with_shift(self, ways: dict[int, float]) -> Coordinates:
         """Return the same with program zero shifted further along some axes."""
@@ -95,15 +103,29 @@ class Coordinates:
 
     def total(self, tables: ProgramTables, modal: Modal) -> Floats:
         """Return the sum of all shifts."""
+        return self._with_offsets(self._within() + self.tool_offset(tables, modal) + self.outer, tables)
+
+    def shifts(self) -> Shifts:
+        """Return what is shown of the program's own."""
+        preset = self.shift if self.shifted else np.zeros(0)
+        within = self._within()
+        if self.turn is None and not within.any():
+            return NO_SHIFTS
+        return Shifts(tuple(preset.tolist()), tuple(within.tolist()), self.turn)
+
+    def _within(self) -> Floats:
+        """Return what the program itself shifts by, turned with the workpiece."""
         within = self.shift + self.local + self.inner if self.shifted else self.local + self.inner
         if (turn := self.turn) is not None:
             within[turn.p], within[turn.q] = turn.turned(float(within[turn.p]), float(within[turn.q]))
-        return self._with_offsets(within + self.tool_offset(tables, modal) + self.outer, tables)
+        return within
 
     def _with_offsets(self, found: Floats, tables: ProgramTables) -> Floats:
         names = (COMMON_OFFSET, *self.work) if tables.has_offset(COMMON_OFFSET) else self.work
         for name in (*names, *self.external):
-            if name != MACHINE_ZERO:
+            if name == self.work[0] and self.selected is not None:
+                found = found + self.selected
+            elif name != MACHINE_ZERO:
                 found = found + tables.work_offset(name)
         return found
 

@@ -14,6 +14,8 @@ from polycnc.nc.blocks import _motion as motion
 from polycnc.nc.blocks._block import BlockContext
 from polycnc.nc.blocks._channel_state import Cycle
 from polycnc.nc.blocks._cycles import (
+    DWELLING,
+    PECKING,
     SHIFTING,
     TAPPING,
     CycleError,
@@ -27,7 +29,7 @@ from polycnc.nc.blocks._cycles import (
 from polycnc.nc.blocks._moves import Feed, Line, Point, QueueItem, Wait
 from polycnc.nc.blocks._polar_words import POLAR_LETTERS, further_polar_places
 from polycnc.nc.blocks._words import GWord, dwell_seconds, whole_number
-from polycnc.nc.modal._actions import Family
+from polycnc.nc.modal._actions import Family, Group
 from polycnc.nc.modal._modal import (
     ABSOLUTE,
     AXIS_P,
@@ -40,6 +42,7 @@ from polycnc.nc.modal._modal import (
     NO_AXIS,
     PLANE,
     PLANE_LETTERS,
+    length_scale,
 )
 from polycnc.nc.text._scan_plain import Word
 
@@ -59,6 +62,8 @@ def begin(block: BlockContext, g: GWord) -> None:
     if not cycle.action:
         axis = int(block.after.modal.whole[AXIS_R])
         initial = float(block.after.modal.position[axis]) if axis != NO_AXIS else 0.0
+    if _strict(block) and g.word.value != cycle.code:
+        cycle = replace(cycle, words=CycleWords())
     block.after.cycle = replace(cycle, action=g.action.title, code=g.word.value, initial=initial)
     block.after.mode = Family.DRILLING
 
@@ -79,8 +84,10 @@ def moves(block: BlockContext) -> list[QueueItem]:
             "Select a plane of the machine's axes with G17, G18 or G19.",
             block.move_word,
         )
-    drills = any(name in words.by_letter for name in ("R", *POLAR_LETTERS, *block.after.axis_names))
-    cycle = replace(block.after.cycle, words=block.after.cycle.words.then(_words(block, axes)))
+    drills = _drills(block, axes, code)
+    if not drills and _strict(block):
+        return []
+    cycle = _with_words(block, block.after.cycle.words.then(_words(block, axes)))
     block.after.cycle = cycle
     if not drills:
         return []
@@ -93,11 +100,46 @@ def moves(block: BlockContext) -> list[QueueItem]:
         place = replace(place, further_mm=further)
     try:
         settings = block.dialect.cycle_settings()
-        steps = expand_cycle(cycle.action, _with_pitch(block, cycle), place, settings, code=code)
+        levels = _with_pitch(block, cycle)
+        if block.dialect.cycles.levels_as_written and not whole[ABSOLUTE]:
+            levels = levels.absolute(place.initial_mm)
+        steps = expand_cycle(cycle.action, levels, place, settings, code=code)
     except CycleError as error:
         at = words.first(*_TROUBLE_LETTERS.get(error.reason, "")) or block.move_word
         raise block.problem(error.what, error.hint, at) from None
     return _items(block, steps, start, hole, axes) if steps else []
+
+
+def _strict(block: BlockContext) -> bool:
+    """Tell whether a cycle takes the words that are its own only."""
+    return "words of another cycle" in block.dialect.refuses
+
+
+def _drills(block: BlockContext, axes: tuple[int, int, int], code: str) -> bool:
+    """Tell whether there is a word left that says where to drill.
+
+    Raises:
+        ProgramError: it is of an axis that the dialect does not move in a cycle, or there is none beside the code.
+    """
+    words, names = block.words, block.after.axis_names
+    places = (*POLAR_LETTERS, *names) if _strict(block) else ("R", *POLAR_LETTERS, *names)
+    drills = any(name in words.by_letter and name not in words.used for name in places)
+    if drills and _strict(block):
+        others = [name for index, name in enumerate(names) if index not in axes]
+        if (word := words.first(*others)) is not None:
+            raise block.problem(f"{code} with axis {word.letter}", "Turn it in a block before.", word)
+    elif Group.MOTION in words.g and "motion code alone" in block.dialect.refuses:
+        raise block.problem(f"{code} without an axis", "Say where it drills.", block.move_word)
+    return drills
+
+
+def _with_words(block: BlockContext, words: CycleWords) -> Cycle:
+    """Return the active cycle with its words; where the dialect keeps a dwell, a tapping cycle without one takes it."""
+    cycle = block.after.cycle
+    last = cycle.last_dwell_s if words.dwell_s is None else words.dwell_s
+    if block.dialect.cycles.keeps_dwell and cycle.action in TAPPING:
+        words = replace(words, dwell_s=last)
+    return replace(cycle, words=words, last_dwell_s=last)
 
 
 def _refuse_state(block: BlockContext, cycle: Cycle, axis: int, code: str) -> None:
@@ -160,17 +202,17 @@ def _with_pitch(block: BlockContext, cycle: Cycle) -> CycleWords:
 def _words(block: BlockContext, axes: tuple[int, int, int]) -> CycleWords:
     modal = block.after.modal
     cycle = block.after.cycle
-    scale = float(modal.scale[axes[2]])
     is_back_bore = cycle.action == _BACK_BORE
 
-    def length(letter: str) -> float | None:
+    def length(letter: str, scale: float = float(modal.scale[axes[2]])) -> float | None:
         value = block.words.length(letter)
         return None if value is None else value * scale
 
-    retract = None if "R" in block.after.axis_names else length("R")
+    # R is a radius also where the axis has diameters.
+    retract = None if "R" in block.after.axis_names else length("R", length_scale(modal))
     depth = length(block.after.axis_names[axes[2]])
     back = length("K") if is_back_bore else None
-    if not modal.whole[ABSOLUTE]:
+    if not modal.whole[ABSOLUTE] and not block.dialect.cycles.levels_as_written:
         initial = cycle.initial - float(modal.offset[axes[2]])
         retract = None if retract is None else initial + retract
         r_level = retract if retract is not None else cycle.words.retract_mm
@@ -179,17 +221,35 @@ def _words(block: BlockContext, axes: tuple[int, int, int]) -> CycleWords:
         bottom = depth if depth is not None else cycle.words.depth_mm
         if back is not None and bottom is not None:
             back += bottom
-    dwell = block.words.take("P")
+    pecks = cycle.action in PECKING or not _strict(block)
     shift_p, shift_q = (length("I"), length("J")) if cycle.action in SHIFTING else (None, None)
     return CycleWords(
         depth_mm=depth,
         retract_mm=retract,
-        peck_mm=length("Q"),
-        dwell_s=None if dwell is None else dwell_seconds(dwell, block.dialect.dwell.get("P", "s")),
+        peck_mm=length("Q") if pecks else None,
+        dwell_s=_dwell(block, cycle),
         shift_mm=None if shift_p is None and shift_q is None else (shift_p or 0.0, shift_q or 0.0),
         back_mm=back,
         repeats=_repeats(block, is_back_bore),
     )
+
+
+def _dwell(block: BlockContext, cycle: Cycle) -> float | None:
+    """Take P (s): any cycle has one, or those that wait only; these need one then.
+
+    Raises:
+        ProgramError: there is none where one is needed.
+    """
+    waits = cycle.action in DWELLING
+    if _strict(block) and not waits and cycle.action not in TAPPING:
+        return None
+    word = block.words.take("P")
+    if word is not None:
+        return dwell_seconds(word, block.dialect.dwell.get("P", "s"))
+    if waits and _strict(block) and cycle.words.dwell_s is None:
+        hint = "Program it in the first block of the cycle."
+        raise block.problem(f"G{cycle.code:g} needs a dwell (P)", hint, block.move_word)
+    return None
 
 
 def _repeats(block: BlockContext, is_back_bore: bool) -> int:

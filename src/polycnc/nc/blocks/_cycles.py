@@ -142,6 +142,11 @@ class _Hole:
     rigid: bool
     settings: CycleSettings
 
+    @property
+    def fed(self) -> float:
+        """The level up to which a cycle that goes out at feed does so."""
+        return self.out if self.settings.feeds_out else self.r
+
 
 _Part: TypeAlias = Callable[[_Hole], Iterator[CycleStep]]
 
@@ -152,7 +157,7 @@ def _axis(kind: StepKind, level: str) -> _Part:
 
 
 def _tap(hole: _Hole) -> Iterator[CycleStep]:
-    """Tap to the depth, in pecks where there are any, and back to R."""
+    """Tap to the depth, in pecks where there are any, and back to R or all the way out."""
 
     def to(level_mm: float) -> CycleStep:
         return CycleStep(
@@ -171,7 +176,7 @@ def _tap(hole: _Hole) -> Iterator[CycleStep]:
         yield from (to(depth), stop, reverse, to(back), stop, start)
     yield from (to(hole.bottom), stop, reverse)
     yield from _dwell(hole)
-    yield from (to(hole.r), stop)
+    yield from (to(hole.fed), stop)
     if not hole.rigid:
         yield start
     yield CycleStep(StepKind.OVERRIDE_ON)
@@ -216,6 +221,7 @@ def _pecks_breaking_chips(hole: _Hole) -> Iterator[CycleStep]:
 
 _FEED_IN = _axis(StepKind.FEED_AXIS, "bottom")
 _FEED_R = _axis(StepKind.FEED_AXIS, "r")
+_FEED_OUT = _axis(StepKind.FEED_AXIS, "fed")
 _FEED_BACK = _axis(StepKind.FEED_AXIS, "back")
 _RAPID_IN = _axis(StepKind.RAPID_AXIS, "bottom")
 _OUT = _axis(StepKind.RAPID_AXIS, "out")
@@ -265,12 +271,16 @@ _ROWS: dict[str, _Row] = {
     "cycle_back_bore": _Row("G87", _BORE_BACK, _SHIFT | {"back"}),
     "cycle_back_bore_up": _Row("G87", _BORE_UP, _SHIFT | {"upwards"}),
     "cycle_bore_manual": _Row("G88", (_FEED_IN, _dwell, _STOP, _OPERATOR, _OUT, _START), _SPINDLE),
-    "cycle_bore_dwell": _Row("G89", (_FEED_IN, _dwell, _FEED_R, _OUT)),
+    "cycle_bore_dwell": _Row("G89", (_FEED_IN, _dwell, _FEED_OUT, _OUT)),
 }
 
 CYCLES: dict[str, str] = {name: row.code for name, row in _ROWS.items()}
 SHIFTING = frozenset(name for name, row in _ROWS.items() if "shift" in row.needs)
 """Cycles whose I and J say where the tool shifts."""
+DWELLING = frozenset(name for name, row in _ROWS.items() if _dwell in row.parts)
+"""Cycles that wait at the bottom for as long as P says."""
+PECKING = frozenset(name for name, row in _ROWS.items() if "peck" in row.needs)
+"""Cycles whose Q is a peck."""
 TAPPING = {name: -1 if "left" in row.needs else 1 for name, row in _ROWS.items() if "tap" in row.needs}
 """Tapping cycles, and which way the spindle turns into their thread."""
 
@@ -351,7 +361,7 @@ def _settled(row: _Row, words: CycleWords, place: CyclePlace, settings: CycleSet
     dwell = words.dwell_s or 0.0
     if dwell < 0.0:
         raise CycleError(f"{code} dwells {dwell:.6g} s", reason="dwell", hint="Give P 0 or more.")
-    _check_spindle(row, place)
+    _check_spindle(row, place, settings)
     first, second = place.hole_mm
     shift = _shift_of(code, words, settings) if "shift" in row.needs else (0.0, 0.0)
     return _Hole(
@@ -391,12 +401,19 @@ def _check_upwards(code: str, top: float, r: float, place: CyclePlace) -> None:
         )
 
 
-def _check_spindle(row: _Row, place: CyclePlace) -> None:
+def _check_spindle(row: _Row, place: CyclePlace, settings: CycleSettings) -> None:
     if "spindle" not in row.needs:
         return
     if place.spindle == "stopped":
         raise CycleError(
             f"{row.code} needs a turning spindle", reason="spindle_stopped", hint="Program M3 or M4 first."
+        )
+    is_right = "tap" in row.needs and "left" not in row.needs
+    if is_right and place.spindle == "reverse" and not settings.taps_either_way:
+        raise CycleError(
+            f"{row.code} taps a right-hand thread, and the spindle turns counter-clockwise (M4)",
+            reason="spindle_direction",
+            hint="Program M3 first.",
         )
     if "left" in row.needs and place.spindle != "reverse":
         raise CycleError(

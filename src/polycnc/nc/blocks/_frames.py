@@ -7,7 +7,7 @@ from dataclasses import replace
 
 from polycnc.nc.blocks import _motion as motion
 from polycnc.nc.blocks._block import BlockContext
-from polycnc.nc.blocks._handlers import carries_out
+from polycnc.nc.blocks._handlers import carries_out, refuse_compensation
 from polycnc.nc.blocks._tables import ADDITIONAL_OFFSETS, COMMON_OFFSET, WORK_SYSTEMS, additional_offset
 from polycnc.nc.blocks._tool_offsets import set_tool
 from polycnc.nc.blocks._turning_data import set_turning_data
@@ -220,7 +220,11 @@ def set_tables(block: BlockContext, g: GWord) -> None:
         set_tool(block, g, table, number)
     elif table in (2, 20):
         number = whole_number(number_word, "a work offset", block.problem, len(WORK_SYSTEMS))
-        _set_system(block, g, table, WORK_SYSTEMS[number - 1] if number else block.after.coordinates.work[0])
+        active = block.after.coordinates.work[0]
+        name = WORK_SYSTEMS[number - 1] if number else active
+        if name == active:
+            refuse_compensation(block, g)
+        _set_system(block, g, table, name)
     else:
         raise block.problem(
             f"G{g.code} L{table} is not there",
@@ -244,17 +248,17 @@ def _set_system(block: BlockContext, g: GWord, table: int, name: str) -> None:
                 "Set it with L2.",
                 block.words.first("R") or g.word,
             )
-        within = modal.offset - tables.work_offset(state.coordinates.work[0])
+        within = modal.offset - state.coordinates.first_offset(tables)
         here = (modal.position - within).tolist()
         values = {axis: here[axis] - value for axis, value in values.items()}
-    if not values and angle is None:
-        raise block.problem(f"G{g.code} without an axis", "Name the axes.", g.word)
     if angle is not None and NO_AXIS in (modal.letter_axis[ord("X") - 65], modal.letter_axis[ord("Y") - 65]):
         raise block.problem("the machine has no plane XY to turn", "Take R out.", block.words.first("R"))
     refuse_rest(block, g)
     tables.set_offset(name, values)
     if angle is not None:
         tables.set_turn(name, angle)
+    if name == state.coordinates.work[0]:
+        state.coordinates = replace(state.coordinates, selected=None)
     state.take_changes()
     if name == state.coordinates.work[0]:
         state.turn_work()

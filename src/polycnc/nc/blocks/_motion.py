@@ -12,9 +12,9 @@ from polycnc.nc.blocks._arc_blocks import arc
 from polycnc.nc.blocks._block import BlockContext
 from polycnc.nc.blocks._corner_blocks import held
 from polycnc.nc.blocks._moves import Feed, Line, Point, QueueItem, Wait
-from polycnc.nc.blocks._polar_words import polar_words
+from polycnc.nc.blocks._polar_words import POLAR_LETTERS, polar_words
 from polycnc.nc.blocks._words import GWord
-from polycnc.nc.modal._actions import Family
+from polycnc.nc.modal._actions import Family, Group
 from polycnc.nc.modal._frame import UNTURNED, Polar
 from polycnc.nc.modal._modal import (
     ABSOLUTE,
@@ -49,7 +49,11 @@ def moves(block: BlockContext) -> list[QueueItem]:
     whole = block.after.modal.whole
     motion = int(whole[MOTION])
     values = axis_words(block)
-    if not values and not (motion >= MOTION_ARC_CW and block.words.first(*"IJKR")):
+    bends = motion >= MOTION_ARC_CW and any(letter in "IJKR" for letter, _ in block.words.unused())
+    if not values and not bends:
+        alone = motion >= MOTION_ARC_CW and Group.MOTION in block.words.g
+        if alone and "motion code alone" in block.dialect.refuses:
+            raise block.problem("an arc without words", "Add its end and I J K or R.", block.move_word)
         return []
     if motion == MOTION_NONE:
         raise block.problem(
@@ -109,8 +113,8 @@ def named_axes(block: BlockContext, g: GWord) -> dict[int, float]:
 
 def axis_word_left(block: BlockContext) -> bool:
     """Tell whether there is an axis word that nothing has taken."""
-    names, ways = block.after.axis_names, block.rules.ways
-    return any(letter in names or letter in ways for letter, _ in block.words.unused())
+    names = (*block.after.axis_names, *block.rules.ways, *POLAR_LETTERS)
+    return any(letter in names for letter, _ in block.words.unused())
 
 
 def target(block: BlockContext, axis_values: dict[int, float], machine_coordinates: bool = False) -> Point:

@@ -19,6 +19,7 @@ from polycnc.nc.blocks._block import BlockContext
 from polycnc.nc.blocks._codes import CODES, MOTION_MODES
 from polycnc.nc.blocks._corner_blocks import joined, no_straight_move
 from polycnc.nc.blocks._handlers import refuse_compensation
+from polycnc.nc.blocks._held_words import held_words
 from polycnc.nc.blocks._motion import axis_word_left, note_position
 from polycnc.nc.blocks._moves import Line, QueueItem
 from polycnc.nc.blocks._nurbs import refuse_others
@@ -27,7 +28,7 @@ from polycnc.nc.blocks._program_words import outcome
 from polycnc.nc.blocks._tool_words import compensate_length, compensate_radius
 from polycnc.nc.blocks._word_checks import leave_out, refuse_contradictions, refuse_unused, take_parameters
 from polycnc.nc.blocks._words import code_text
-from polycnc.nc.modal._actions import Family, Group
+from polycnc.nc.modal._actions import Action, Family, Group
 from polycnc.nc.modal._modal import (
     EXACT_STOP,
     FEED,
@@ -148,6 +149,12 @@ def radius(block: BlockContext) -> None:
         compensate_radius(block)
 
 
+def held(block: BlockContext) -> None:
+    """Refuse what radius compensation holds back on this control."""
+    if block.dialect.held_by_compensation:
+        held_words(block)
+
+
 def rest(block: BlockContext) -> None:
     """Say whether this block comes to rest at its end, and report what has no effect."""
     whole = block.after.modal.whole
@@ -180,15 +187,19 @@ def _moves(block: BlockContext) -> list[QueueItem]:
         mode = MOTION_MODES[word.action.family]
         mode.begin(block, word)
     if pause := g.get(Group.DWELL):
-        if axis_word_left(block):
+        bends = word is not None and word.action in (Action.ARC_CW, Action.ARC_CCW)
+        if bends and word is not None and block.dialect.dwell_before_move:
+            raise block.problem(f"G{pause.code} and G{word.code} both use P", "Write two blocks.", word.word)
+        if axis_word_left(block) and not block.dialect.dwell_before_move:
             raise block.problem(
                 f"a dwell (G{pause.code}) and a move in one block",
                 "Write them in two blocks.",
                 next((left for letter, left in block.words.unused() if letter in state.axis_names), None),
             )
-        return []
+        if not axis_word_left(block):
+            return []
     if code := g.get(Group.NON_MODAL):
-        if code.action.family in _UNCOMPENSATED:
+        if code.action.family in _UNCOMPENSATED and code.action is not Action.SET_TABLES:
             refuse_compensation(block, code)
         return [*(CODES[code.action](block, code) or ())]
     if mode is None or not _is_spline(block):
@@ -260,7 +271,7 @@ def codes(block: BlockContext) -> None:
 
 STEPS: tuple[Step, ...] = (
     words, ends, code(Group.UNITS, Group.DIAMETERS), increments, code(Group.PLANE, Group.FEED_MODE),
-    feed, spindle, tool, functions, code(Group.DWELL), length, radius,
+    feed, spindle, tool, functions, code(Group.DWELL), length, radius, held,
     code(Group.WORK_OFFSET, Group.STOPPING, Group.DISTANCE, Group.ARC_DISTANCE, Group.RETRACT), rest,
     code(Group.ROTATION, Group.POLAR), motion, unused, stops, times, position, codes,
 )  # fmt: skip

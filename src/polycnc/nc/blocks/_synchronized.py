@@ -18,7 +18,7 @@ from polycnc.nc.blocks._block import BlockContext
 from polycnc.nc.blocks._moves import Feed, Line, Point, QueueItem, Wait
 from polycnc.nc.blocks._turning import MOST_PASSES
 from polycnc.nc.blocks._words import whole_number
-from polycnc.nc.modal._actions import Action
+from polycnc.nc.modal._actions import Action, Group
 from polycnc.nc.modal._modal import length_scale
 from polycnc.units import SECONDS_PER_MINUTE
 
@@ -37,7 +37,9 @@ def moves(block: BlockContext) -> list[QueueItem]:
     """
     name = block.after.turning.motion
     values = motion.axis_words(block)
-    if not values and not block.words.first(*"PIJK"):
+    if not values and not any(letter in "PIJK" for letter, _ in block.words.unused()):
+        if Group.MOTION in block.words.g and "motion code alone" in block.dialect.refuses:
+            raise block.problem("a thread without an axis", "Say where it ends.", block.move_word)
         return []
     if not values:
         raise block.problem("a thread without an axis", "Say where it ends.", block.move_word)

@@ -27,6 +27,10 @@ def tool_data(block: BlockContext, tool: int) -> ToolConfig:
     tools = block.after.machine.tools
     if block.after.tables.has_tool(tool):
         return block.after.tables.tool(tool)
+    if tool and tools and "unknown tools" in block.dialect.refuses:
+        raise block.problem(
+            f"tool {tool} is not in the tool table", "Add it to the machine file.", block.words.first(*"HDQT")
+        )
     if tool and not tools:
         block.note("the machine has no tool table: lengths and radii of all tools are 0 mm")
     elif tool:
@@ -59,8 +63,11 @@ def shift_by_tool(block: BlockContext, g: GWord) -> None:
         shifts = {**dict(enumerate(in_force)), **named_axes(block, g)}
     else:
         word = block.words.take("H")
-        if word is None and g.action is Action.TOOL_OFFSET_ADD:
-            raise block.problem(f"G{g.code} without H", "Add H and the number of the tool.", g.word)
+        if g.action is Action.TOOL_OFFSET_ADD:
+            if word is None:
+                raise block.problem(f"G{g.code} without H", "Add H and the number of the tool.", g.word)
+            if axis_words(block):
+                raise block.problem(f"G{g.code} with axis words", "Move in a block of its own.", g.word)
         tool = state.tool if word is None else whole_number(word, "a tool offset number", block.problem)
         shifts = offsets_of(state, tool_data(block, tool))
         if g.action is Action.TOOL_OFFSET_ADD:

@@ -10,7 +10,8 @@ from polycnc.nc.blocks._tip import TIPS, TipShift
 from polycnc.nc.blocks._tool_offsets import OFFSETS, diameter_of, shift_by_tool, tool_data
 from polycnc.nc.blocks._words import GWord, whole_number
 from polycnc.nc.modal._actions import Action, Group
-from polycnc.nc.modal._modal import NO_AXIS
+from polycnc.nc.modal._modal import NO_AXIS, PLANE, PLANE_YZ, PLANE_ZX
+from polycnc.nc.text._scan_plain import Word
 
 _BY_DIAMETER = (Action.COMP_LEFT_DIAMETER, Action.COMP_RIGHT_DIAMETER)
 
@@ -73,7 +74,7 @@ def compensate_radius(block: BlockContext) -> None:
     state = block.after
     g = block.words.g.get(Group.RADIUS_COMPENSATION)
     given = None if g is None or g.action not in _BY_DIAMETER else diameter_of(block, g)
-    d_word = block.words.take("D")
+    d_word = _d_word(block, g)
     if d_word is not None:
         state.compensation_tool = whole_number(d_word, "a tool offset number", block.problem)
     if g is not None:
@@ -89,6 +90,8 @@ def compensate_radius(block: BlockContext) -> None:
     radius = data.radius_mm + data.wear_radius_mm
     radius += state.tables.tool_radius(state.placement.compensations)
     tip = _tip(block, data, radius)
+    if "compensation outside X Y and X Z" in block.dialect.refuses:
+        _check_plane(block, data.tip, None if g is None else g.word)
 
     def start() -> None:
         state.compensation = state.compensation.copy()
@@ -101,12 +104,28 @@ def compensate_radius(block: BlockContext) -> None:
                 block.dialect.lead_in_by_arc,
                 block.dialect.leads_out_at_once,
                 block.dialect.lead_in_beside_itself,
+                block.dialect.rapids_across_corners,
             ),
         )
         if tip != state.tip.vector:
             state.tip = TipShift(tip)
 
     block.change = start
+
+
+def _d_word(block: BlockContext, g: GWord | None) -> Word | None:
+    """Take D, on some controls beside the code of a side only."""
+    alone = g is None or not g.value
+    return None if alone and "D alone" in block.dialect.refuses else block.words.take("D")
+
+
+def _check_plane(block: BlockContext, tip: int, word: Word | None) -> None:
+    """Refuse a plane in which the control does not compensate: Y Z, and with a turning tool all but X Z."""
+    plane = int(block.after.modal.whole[PLANE])
+    if plane == PLANE_YZ or (tip and plane != PLANE_ZX):
+        tool = " with a turning tool" if tip else ""
+        hint = "Select G18 for turning tools, G17 or G18 for others."
+        raise block.problem(f"radius compensation in this plane{tool}", hint, word)
 
 
 def _tip(block: BlockContext, data: ToolConfig, radius: float) -> tuple[tuple[int, float], ...]:

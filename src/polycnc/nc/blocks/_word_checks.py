@@ -43,13 +43,17 @@ def refuse_contradictions(block: BlockContext) -> None:
     if len(g) < 2:
         return
     non_modal, dwell, motion = g.get(Group.NON_MODAL), g.get(Group.DWELL), g.get(Group.MOTION)
+    alone = "axis codes beside a motion" in block.dialect.refuses
     if dwell and non_modal:
         _exclude(block, f"G{dwell.code}", f"G{non_modal.code}", "both need their own block", non_modal.word)
     if motion is None:
         return
     is_straight = motion.action in (Action.RAPID, Action.LINEAR)
+    if motion.action is Action.MOTION_OFF and alone:
+        return
     if non_modal and (
-        non_modal.action in (Action.SET_POSITION, Action.SET_SHIFT)
+        (alone and "axes" in non_modal.action.takes and non_modal.action is not Action.MACHINE_COORDINATES)
+        or non_modal.action in (Action.SET_POSITION, Action.SET_SHIFT)
         or motion.action.family in _CURVED
         or (non_modal.action is not Action.MACHINE_COORDINATES and not is_straight)
     ):

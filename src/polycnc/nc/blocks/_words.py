@@ -26,6 +26,7 @@ _NOT_YET = "What it does would be left out: take it out, or post the program wit
 _OTHER_DIALECT = "Remove it, or name the dialect of the control that the program is for."
 _REMARKS = re.compile(rb"\([^)\r\n]*\)")
 _COOLANT_ON = (MAction.COOLANT_MIST, MAction.COOLANT_FLOOD)
+_BOTH_COOLANTS = set(_COOLANT_ON)
 
 
 @dataclass(frozen=True, slots=True)
@@ -171,6 +172,14 @@ class WordSorter:
                 return
             words.ignored.append(entry)
             return
+        if (
+            group is Group.MOTION
+            and group in words.g
+            and Action.MOTION_OFF in (action, words.g[group].action)
+        ):
+            if action is Action.MOTION_OFF:
+                return
+            del words.g[group]
         if group in words.g:
             self._override(f"G{words.g[group].code}", f"G{code}", group, word, words, fail)
         words.g[group] = entry
@@ -188,16 +197,21 @@ class WordSorter:
             words.left_out.append(f"M{code}")
             return
         for other in list(words.m):
-            pair = action, other.action
+            pair = {action, other.action}
             if other.code == code or (action.group and other.action.group == action.group):
                 group = action.group
-            elif MAction.COOLANT_OFF in pair and not set(pair).isdisjoint(_COOLANT_ON):
+            elif self._are_coolants(pair):
                 group = "coolant"
             else:
                 continue
             self._override(f"M{other.code}", f"M{code}", group, word, words, fail)
             words.m.remove(other)
         words.m.append(MWord(word, code, action))
+
+    def _are_coolants(self, pair: set[MAction]) -> bool:
+        """Tell whether two coolant codes exclude each other."""
+        switched_off = MAction.COOLANT_OFF in pair and not pair.isdisjoint(_COOLANT_ON)
+        return switched_off or (pair == _BOTH_COOLANTS and "two coolants" in self._dialect.refuses)
 
     def _override(
         self, first: str, second: str, group: str, word: Word, words: BlockWords, fail: Fail

@@ -27,7 +27,7 @@ from polycnc.nc.channel._turns import SavedTurns
 from polycnc.nc.modal._actions import Family
 from polycnc.nc.modal._frame import Frame, Polar, Rotation
 from polycnc.nc.modal._modal_snapshot import ModalSnapshot, Spindle
-from polycnc.nc.modal._placement import Placement
+from polycnc.nc.modal._placement import Placement, Shifts
 from polycnc.nc.modal._suppressed import Suppressed
 from polycnc.nc.records._block_records import Call, SavedRecords
 from polycnc.nc.records._replay import RunBegin
@@ -59,8 +59,8 @@ class ChannelSnapshot(NamedTuple):
 CHANNEL_CLASSES: Sequence[type] = (
     Arc, Back, Call, ChannelSnapshot, Coordinates, Corner, Cycle, CycleWords, Event, Family, Feed, Frame, Leg, Line,
     Message, ModalSnapshot, Nurbs, Place, Placement, Plain, Polar, Probe, Rotation, RunBegin, SavedCall,
-    Leads, SavedCompensation, SavedRecords, SavedState, SavedTables, SavedTurns, SourcePosition, Spindle, Spline, Stop,
-    Suppressed, TipShift, Turning, Wait, WriterSnapshot,
+    Leads, SavedCompensation, SavedRecords, SavedState, SavedTables, SavedTurns, Shifts, SourcePosition, Spindle,
+    Spline, Stop, Suppressed, TipShift, Turning, Wait, WriterSnapshot,
 )  # fmt: skip
 """The classes of which a snapshot of a channel is made, beside those of its language."""
 

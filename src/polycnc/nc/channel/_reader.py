@@ -168,6 +168,9 @@ class Reader:
         """Scan the blocks that follow the present place; the place moves after them."""
         place = self.place
         self._words = columns
+        if place.offset >= self.end:
+            self._open, self._next, self._after, self.at_end = None, 0, 0, True
+            return
         data = place.text.data[: self.end]
         rules = self._rules if self.word_values is None else self._rules._replace(open_words=True)
         offset = scan(data, place.offset, place.line, rules, columns)

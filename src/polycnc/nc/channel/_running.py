@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import NamedTuple
+from functools import cache
+from typing import NamedTuple, cast
 
 from polycnc.nc.records._block_records import Call
 from polycnc.nc.sources._block_source import BlockSource, OpenSource, WordValues
@@ -42,7 +43,16 @@ class Running:
     @property
     def word_values(self) -> WordValues | None:
         """What words without a number stand for in its text."""
-        return self.source.word_values if isinstance(self.source, OpenSource) else None
+        source = self.source
+        if source is None or not _is_open(type(source)):
+            return None
+        return cast("OpenSource", source).word_values
+
+
+@cache
+def _is_open(source: type) -> bool:
+    """Tell whether sources of a class know values of words; to ask a protocol costs more than a call does."""
+    return hasattr(source, "word_values")
 
 
 class SavedCall(NamedTuple):

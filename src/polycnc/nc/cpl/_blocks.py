@@ -99,7 +99,6 @@ class CplLanguage:
         bounds, self._bounds = self._bounds, None
         if called is None and not self.running:
             self.linker.stepping = self.shows_statements or bounds is not None
-        if called is None and not self.running:
             self.linker.look_again()
         if offset or (called is None and not holds_cpl(text.content, self.linker.alone)):
             return None
@@ -145,10 +144,8 @@ class CplLanguage:
             )
             for arguments, source in under_way
         )
-        shared, kept = (
-            {name: plain(value) for name, value in variables.items()}
-            for variables in (self.globals, permanent)
-        )
+        both = self.globals, permanent
+        shared, kept = ({name: plain(value) for name, value in variables.items()} for variables in both)
         return SavedCpl(objects.all(), shared, kept, self.modal, programs)
 
     def restore_point(self, channel: object, saved: object) -> Returning:
@@ -221,12 +218,16 @@ class CplLanguage:
 
     def loops(self) -> bool:
         """Tell whether the programs under way loop without end: to be asked now and then while nothing moves."""
-        running, shared = (each.execution for each in self.running), (self.globals, self._host.permanent)
-        return self._loop.repeats(self._host.effects, running, shared)
+        running = (each.execution for each in self.running)
+        return self._loop.repeats(self._host, running, (self.globals, self._host.permanent))
 
     def only_computes(self) -> bool:
         """Tell whether the programs have done nothing but compute since `loops` was asked first."""
-        return self._loop.only_computes(self._host.effects)
+        return self._loop.only_computes(self._host)
+
+    def asks_nobody(self) -> bool:
+        """Tell whether the programs have asked nobody else for anything since `loops` was asked first."""
+        return self._loop.asks_nobody(self._host)
 
     def moves_on(self) -> None:
         """Take note that something has happened since `loops` was asked."""

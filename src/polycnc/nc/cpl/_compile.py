@@ -7,6 +7,7 @@ from collections.abc import Callable, Iterable
 
 from polycnc.language import Chain, Emitter, Flaw, Flow, Jump, Link, Mark, Python, Source, Traced
 from polycnc.nc.cpl._faults import INVALID_ASSIGNMENT
+from polycnc.nc.cpl._functions import work_of
 from polycnc.nc.cpl._operators import NUMERIC, Typed
 from polycnc.nc.cpl._stores import Stores
 from polycnc.nc.cpl._syntax import (
@@ -37,9 +38,8 @@ from polycnc.nc.text._silent import is_silent
 SLICE = 20_000
 """How much a program does, in assignments, before it lets time pass."""
 _CALL = 4
-_OF_CONTROL = 200
 _SUB_PROGRAM = 2000
-_CALLS_OF_CONTROL = re.compile(r"\b(?:function|setter)_[A-Z]\w*\(")
+_CALLS_OF_CONTROL = re.compile(r"\b(?:function|setter)_([A-Z]\w*)\(")
 _SUB_PROGRAMS = re.compile(r"\byield SubProgram\(")
 
 
@@ -50,7 +50,7 @@ def _work(lines: Iterable[str]) -> int:
         text.count("\n")
         + 1
         + _CALL * text.count("(")
-        + _OF_CONTROL * len(_CALLS_OF_CONTROL.findall(text))
+        + sum(work_of(name) for name in _CALLS_OF_CONTROL.findall(text))
         + _SUB_PROGRAM * len(_SUB_PROGRAMS.findall(text))
     )
 

@@ -133,8 +133,29 @@ TIMED = frozenset(
     {"CLOCK", "DATE", "TIME", "IC", "PLC", "WPOS", "MPOS", "APOS", "SPOS", "SD", "SDR", "INKEY"}
 )
 """Functions whose answers change with the control's cycles, if the program does nothing."""
+_WORK, _WORK_OF_FILES, _WORK_OF_OPENING = 200, 1000, 2500
 
 FUNCTIONS: dict[str, Function] = {row.name: row for rows in GROUPS.values() for row in rows}
 """Every function and command by its name."""
+PATIENT = frozenset(name for name, row in FUNCTIONS.items() if row.waiting) | (TIMED - STEADY)
+"""Functions that something else than the program may answer otherwise, in time."""
 OWN = {row.run.__name__: row.run for row in FUNCTIONS.values() if row.run is not None}
 """What running programs know of Python for CPL's own functions."""
+
+
+def python_name(name: str) -> str:
+    """Return a name that Python can have."""
+    return name.replace("#", "_n").replace("$", "_s")
+
+
+_WORKS = (
+    {python_name(row.name): _WORK_OF_FILES for row in (*FILES, *SCREEN)}
+    | dict.fromkeys(("OPENW", "OPENR", "ERASE", "REWRITE", "FILEACCESS", "FILEDATE", "BMP"), _WORK_OF_OPENING)
+    | dict.fromkeys(("EOF", "FILEPOS", "FILESIZE", "INKEY"), _WORK)
+    | {"LIN": 4 * _WORK_OF_FILES, "CIR": 20 * _WORK_OF_FILES, "FIL": 20 * _WORK_OF_FILES}
+)
+
+
+def work_of(python: str) -> int:
+    """Return how much a function of the control does, in assignments, by its `python_name`."""
+    return _WORKS.get(python, _WORK)

@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterable, Mapping, MutableMapping
 from typing import Any
 
 from polycnc.nc.cpl._fields import Field
-from polycnc.nc.cpl._functions import STEADY
+from polycnc.nc.cpl._functions import PATIENT, STEADY
 from polycnc.nc.cpl._host import Host
 from polycnc.nc.cpl._run import Execution
 from polycnc.nc.cpl._strings import CharacterField, Part
@@ -15,11 +15,14 @@ _SIMPLE = (int, float, str, bool, type(None))
 
 
 class WatchedHost:
-    """A control that counts in `effects` what was done, and what may answer another time otherwise."""
+    """A control that counts in `effects` what was done, and what may answer another time otherwise.
+
+    Of these it counts in `asked` what somebody else may answer.
+    """
 
     def __init__(self, host: Host) -> None:
         self._host = host
-        self.effects = 0
+        self.effects = self.asked = 0
 
     @property
     def permanent(self) -> MutableMapping[str, Any]:
@@ -29,7 +32,7 @@ class WatchedHost:
     def function(self, name: str) -> Callable[..., object]:
         """Return a function of the control."""
         found = self._host.function(name)
-        return found if name in STEADY else self._counted(found)
+        return found if name in STEADY else self._counted(found, asks=name in PATIENT)
 
     def setter(self, name: str) -> Callable[..., None]:
         """Return what an assignment does."""
@@ -43,9 +46,10 @@ class WatchedHost:
         """Return a sub-program."""
         return self._host.program(address, name)
 
-    def _counted(self, function: Callable[..., Any]) -> Callable[..., Any]:
+    def _counted(self, function: Callable[..., Any], *, asks: bool = False) -> Callable[..., Any]:
         def call(*arguments: object, **named: object) -> Any:
             self.effects += 1
+            self.asked += asks
             return function(*arguments, **named)
 
         return call
@@ -58,23 +62,27 @@ class LoopWatch:
         self._kept: tuple[tuple[object, ...], tuple[object, ...]] | None = None
         self._left = 0
         self._power = 1
-        self._since: int | None = None
+        self._since: tuple[int, int] | None = None
 
     def forget(self) -> None:
         """Begin anew: something has happened."""
         self._kept, self._left, self._power, self._since = None, 0, 1, None
 
-    def only_computes(self, effects: int) -> bool:
+    def only_computes(self, host: WatchedHost) -> bool:
         """Tell whether nothing was done, nor asked for that may be answered otherwise, since it was looked at first."""
-        return self._since == effects
+        return self._since == (host.effects, host.asked)
+
+    def asks_nobody(self, host: WatchedHost) -> bool:
+        """Tell whether nothing was asked for that somebody else may answer, since it was looked at first."""
+        return self._since is not None and self._since[1] == host.asked
 
     def repeats(
-        self, effects: int, running: Iterable[Execution], shared: Iterable[Mapping[str, Any]]
+        self, host: WatchedHost, running: Iterable[Execution], shared: Iterable[Mapping[str, Any]]
     ) -> bool:
         """Tell whether the present state is one that was kept."""
         if self._since is None:
-            self._since = effects
-        simple: list[object] = [effects]
+            self._since = host.effects, host.asked
+        simple: list[object] = [host.effects]
         large: list[object] = []
         for values in (*(execution.state() for execution in running), *shared):
             for value in values.values():

@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 from polycnc.language import Emitter, Flaw, Python
 from polycnc.nc.cpl._faults import INVALID_ASSIGNMENT
-from polycnc.nc.cpl._functions import STEADY, TIMED
+from polycnc.nc.cpl._functions import STEADY, TIMED, python_name
 from polycnc.nc.cpl._operators import Typed
 from polycnc.nc.cpl._reader import single
 from polycnc.nc.cpl._syntax import Dim, Expression, Name
@@ -47,7 +47,7 @@ class Stores:
         return python
 
     def host(self, name: str, at: int, door: str = "function") -> str:
-        python = f"{door}_{name.replace('#', '_n').replace('$', '_s')}"
+        python = f"{door}_{python_name(name)}"
         self.hosts.setdefault(python, (f"host.{door}({name!r})", at))
         timed = name in TIMED and door == "function"
         if timed and self.hot:

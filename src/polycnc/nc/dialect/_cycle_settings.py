@@ -3,7 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Literal, TypeAlias
+from typing import Annotated, Literal, TypeAlias
+
+from pydantic import Field
+
+from polycnc.machine import StrictModel
 
 PeckTap: TypeAlias = Literal["none", "chip_break", "retract"]
 
@@ -14,10 +18,48 @@ class CycleSettings:
 
     `chip_break_mm` is how far G73 backs up, `reentry_mm` how far above the last cut G83 changes from rapid to
     feed. `shift_direction` is where Q shifts the tool when a block gives no I and J. `peck_tap` is what Q does in a
-    tapping cycle: nothing, back by `chip_break_mm`, or back to R.
+    tapping cycle: nothing, back by `chip_break_mm`, or back to R. With `feeds_out` tapping and G89 go out at feed all
+    the way; `taps_either_way` lets G84 tap a left-hand thread with M4.
     """
 
     chip_break_mm: float = 1.0
     reentry_mm: float = 1.0
     shift_direction: tuple[float, float] = (1.0, 0.0)
     peck_tap: PeckTap = "none"
+    feeds_out: bool = False
+    taps_either_way: bool = True
+
+
+class Cycles(StrictModel):
+    """What the control's parameters say about drilling cycles."""
+
+    chip_break_mm: Annotated[float, Field(ge=0)] = Field(
+        default=1.0, description="How far a chip break backs up."
+    )
+    reentry_mm: Annotated[float, Field(ge=0)] = Field(
+        default=1.0, description="How far above the last cut a deep-hole peck begins to feed."
+    )
+    shift: Literal["+1", "-1", "+2", "-2"] = Field(
+        default="+1", description="Axis of the plane and direction in which Q shifts a boring tool."
+    )
+    peck_tap: PeckTap = Field(
+        default="none",
+        description='What Q does in a tapping cycle: nothing, "chip_break" backs up, "retract" goes back to R.',
+    )
+    rigid_tap: bool = Field(default=False, description="Tapping cycles turn the spindle by themselves.")
+    feeds_out: bool = Field(
+        default=False, description="Tapping and G89 go out at feed all the way, also above R."
+    )
+    levels_as_written: bool = Field(
+        default=False,
+        description="R and Z are positions or ways by the mode in force where a hole is drilled, not where they stand.",
+    )
+    keeps_dwell: bool = Field(
+        default=False, description="A tapping cycle without P waits as long as the last P of a cycle said."
+    )
+    no_hole: bool = Field(
+        default=True, description="L0 or K0 drills nothing and keeps the words for later blocks."
+    )
+    repeats: tuple[Literal["L", "K"], ...] = Field(
+        default=("L", "K"), description="Addresses that say how many holes a block drills."
+    )

@@ -12,16 +12,16 @@ from collections.abc import Iterable
 from functools import cache, cached_property
 from importlib import resources
 from pathlib import Path
-from typing import Annotated, Literal, NamedTuple
+from typing import Annotated, Literal, NamedTuple, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
 from pydantic import AfterValidator, Field, model_validator
 
-from polycnc.errors import UsageError
+from polycnc.errors import UsageError, did_you_mean
 from polycnc.machine import PathConfig, StrictModel, load_toml, parse_toml, problem, validate
-from polycnc.nc.dialect._cycle_settings import CycleSettings, PeckTap
-from polycnc.nc.modal._actions import M_ACTIONS, M_SENSES, NO_SENSE, Action, Family, MAction, of_family
+from polycnc.nc.dialect._cycle_settings import Cycles, CycleSettings
+from polycnc.nc.modal._actions import M_ACTIONS, M_SENSES, NO_SENSE, Action, Family, Group, MAction, of_family
 from polycnc.nc.modal._modal import (
     ABSOLUTE,
     ARC_RELATIVE,
@@ -52,6 +52,17 @@ _LOW_M = 100  # M0 to M99 are looked at for what they switch
 _CODE = re.compile(r"([GgMm])[ \t]*([0-9]{1,5}(?:\.[0-9])?)")
 _PLANES = {"xy": PLANE_XY, "zx": PLANE_ZX, "yz": PLANE_YZ}
 _MOTIONS = {"none": MOTION_NONE, "rapid": MOTION_RAPID, "linear": MOTION_LINEAR}
+Refused: TypeAlias = Literal[
+    "G84 with M4",
+    "motion code alone",
+    "axis codes beside a motion",
+    "words of another cycle",
+    "two coolants",
+    "unknown tools",
+    "D alone",
+    "half a centre",
+    "compensation outside X Y and X Z",
+]
 _ACTIONS = {action.title: action for action in Action}
 
 
@@ -75,6 +86,13 @@ def _known_m_actions(table: dict[str, str]) -> dict[str, str]:
                 f"'{action}' is not an action", hint=f"use one of {', '.join(M_ACTIONS)}", at=(code,)
             )
     return table
+
+
+def _groups_or_m_codes(names: tuple[str, ...]) -> tuple[str, ...]:
+    for name in names:
+        if name not in set(Group) and not re.fullmatch(r"M[0-9]{1,3}", name):
+            raise problem(f"'{name}' is no group", hint=f"use M6, or one of {', '.join(Group)}")
+    return names
 
 
 def _only_marks(characters: str) -> str:
@@ -134,31 +152,6 @@ class SubPrograms(StrictModel):
     )
     end_returns: bool = Field(
         default=False, description="An end of program (M2, M30) in a sub-program returns to its caller."
-    )
-
-
-class Cycles(StrictModel):
-    """What the control's parameters say about drilling cycles."""
-
-    chip_break_mm: Annotated[float, Field(ge=0)] = Field(
-        default=1.0, description="How far a chip break backs up."
-    )
-    reentry_mm: Annotated[float, Field(ge=0)] = Field(
-        default=1.0, description="How far above the last cut a deep-hole peck begins to feed."
-    )
-    shift: Literal["+1", "-1", "+2", "-2"] = Field(
-        default="+1", description="Axis of the plane and direction in which Q shifts a boring tool."
-    )
-    peck_tap: PeckTap = Field(
-        default="none",
-        description='What Q does in a tapping cycle: nothing, "chip_break" backs up, "retract" goes back to R.',
-    )
-    rigid_tap: bool = Field(default=False, description="Tapping cycles turn the spindle by themselves.")
-    no_hole: bool = Field(
-        default=True, description="L0 or K0 drills nothing and keeps the words for later blocks."
-    )
-    repeats: tuple[Literal["L", "K"], ...] = Field(
-        default=("L", "K"), description="Addresses that say how many holes a block drills."
     )
 
 
@@ -265,6 +258,29 @@ class Dialect(StrictModel):
     machine_coordinates_in_g91: bool = Field(
         default=True,
         description="Moves in machine coordinates (G53) may stand where positions are incremental.",
+    )
+    held_by_compensation: Annotated[tuple[str, ...], AfterValidator(_groups_or_m_codes)] = Field(
+        default=(),
+        description='Modal groups and M codes that are refused while radius compensation is on: `"stopping"`, `"M6"`.',
+    )
+    dwell_before_move: bool = Field(
+        default=False, description="A block may dwell (G4) and move, in this order."
+    )
+    rapids_across_corners: bool = Field(
+        default=False,
+        description="With radius compensation a rapid move goes straight across an outside corner before it.",
+    )
+    refuses: tuple[Refused, ...] = Field(
+        default=(), description="What is refused here and taken elsewhere: see the table of refusals."
+    )
+    m_words: dict[str, str] = Field(
+        default={},
+        description='Words that M codes take ("auxiliary_words", "spindle_orient", outputs), like `62 = "P!"`: a '
+        'letter with ! must be there; "other" are codes without a line of their own.',
+    )
+    tool_change_stops_spindle: bool = Field(default=False, description="M6 stops the spindle.")
+    d_limits_spindle: bool = Field(
+        default=False, description="D beside G96 is the highest speed of the spindle, none without it."
     )
     lead_in_by_arc: bool = Field(
         default=False,
@@ -388,6 +404,8 @@ class Dialect(StrictModel):
             reentry_mm=cycles.reentry_mm,
             shift_direction=(sign, 0.0) if cycles.shift[1] == "1" else (0.0, sign),
             peck_tap=cycles.peck_tap,
+            feeds_out=cycles.feeds_out,
+            taps_either_way="G84 with M4" not in self.refuses,
         )
 
     @property
@@ -467,5 +485,5 @@ def load_dialect(source: str | Path | Dialect | None = None) -> Dialect:
         return validate(Dialect, data, locator)
     raise UsageError(
         f"there is no dialect '{source}'",
-        hint=f"Use {', '.join(_SHIPPED)}, or a TOML file that describes one.",
+        hint=f"{did_you_mean(str(source), _SHIPPED)}Use {', '.join(_SHIPPED)}, or a TOML file that describes one.",
     )

@@ -6,7 +6,7 @@ import math
 from dataclasses import dataclass
 from typing import NamedTuple
 
-from polycnc.nc.modal._placement import Placement
+from polycnc.nc.modal._placement import Placement, Shifts
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,3 +43,4 @@ class ModalSnapshot(NamedTuple):
     length_tool: int
     m_codes: tuple[int, ...]
     placement: Placement
+    shifts: Shifts

@@ -39,7 +39,26 @@ class Placement:
         return Rotation(*plane, 0.0, 0.0, self.position_deg) if self.position_deg else None
 
 
+@dataclass(frozen=True, slots=True)
+class Shifts:
+    """Hold how program zero lies beside work offsets and tools; vectors are empty for none.
+
+    `preset` is what G92 shifts, `own` all that the program shifts, turned as `turn` turns the workpiece.
+    """
+
+    preset: Vector = ()
+    own: Vector = ()
+    turn: Rotation | None = None
+
+    def back(self, found: list[float]) -> list[float]:
+        """Return distances from program zero in the coordinates of the turned workpiece; `found` becomes them."""
+        if (turn := self.turn) is not None:
+            found[turn.p], found[turn.q] = turn.turned(found[turn.p], found[turn.q], -1.0)
+        return found
+
+
 NO_PLACEMENT = Placement()
+NO_SHIFTS = Shifts()
 """Where positions lie when a program has said nothing of it."""
 
 

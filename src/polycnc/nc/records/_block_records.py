@@ -35,7 +35,7 @@ from polycnc.nc.modal._modal import (
     PLANE,
 )
 from polycnc.nc.modal._modal_snapshot import ModalSnapshot
-from polycnc.nc.modal._placement import NO_PLACEMENT, Placement
+from polycnc.nc.modal._placement import NO_PLACEMENT, NO_SHIFTS, Placement, Shifts
 from polycnc.nc.records._replay import PLAIN_MOTIONS, Replay, RunBegin, coolant_after, latest, replay_of
 from polycnc.nc.text._program import ProgramText
 from polycnc.nc.text._scan import ScanRules, scan, word_columns
@@ -69,7 +69,7 @@ class ModalWords:
     next tool change; `d` is None before the first D word. `m` are the M codes of the last block that had any,
     `coolant` those of the coolant that is on.
     `zero` is where program zero lies in machine coordinates (mm, degree), one value per axis; `work` are the work
-    offsets of all groups, `placement` what the program has shifted, scaled and turned besides.
+    offsets of all groups, `placement` what the program has shifted, scaled and turned besides, `shifts` by how much.
     """
 
     g: dict[Group, str]
@@ -85,6 +85,7 @@ class ModalWords:
     zero: tuple[float, ...]
     work: tuple[str, ...] = ()
     placement: Placement = NO_PLACEMENT
+    shifts: Shifts = NO_SHIFTS
     spindle_oriented: bool = False
     coolant: tuple[int, ...] = ()
 
@@ -388,6 +389,7 @@ class BlockRecords:
             zero=tuple(np.frombuffer(modal.offset).tolist()),
             work=modal.work,
             placement=modal.placement,
+            shifts=modal.shifts,
             spindle_oriented=spindle.oriented,
             coolant=spindle.coolant,
         )

@@ -19,11 +19,13 @@ from polycnc.nc.modal._modal import (
     PLANE,
     length_scale,
 )
+from polycnc.units import MM_PER_INCH
 
 AXES = "XYZABCUVW"
 _MOTIONS = {-1: 800.0, 0: 0.0, 1: 10.0, 2: 20.0, 3: 30.0, 4: 50.0, 5: 51.0, 6: 52.0}
 _TURNING = {"synchronized": 330.0, "tap_and_back": 331.0, "threading": 760.0}
 _PLANES = {0: 170.0, 1: 180.0, 2: 190.0}
+_M_PER_FOOT = 12.0 * MM_PER_INCH / 1000.0
 
 
 class Known(Protocol):
@@ -65,11 +67,17 @@ def _has_diameters(of: Known) -> bool:
     return axis >= 0 and float(modal.scale[axis]) != length_scale(modal)
 
 
+def _speed_word(of: Known) -> float:
+    """Return the last S: revolutions, or a cutting speed in m/min or feet/min."""
+    feet = of.state.spindle.surface_speed and of.state.modal.whole[INCH]
+    return float(of.state.spindle.speed) / (_M_PER_FOOT if feet else 1.0)
+
+
 KNOWN_NAMES: dict[str, Value] = {
     **{f"_{letter.lower()}": _at(axis, False) for axis, letter in enumerate(AXES)},
     **{f"_abs_{letter.lower()}": _at(axis, True) for axis, letter in enumerate(AXES)},
     "_feed": lambda of: float(of.state.modal.real[FEED_NUMBER]),
-    "_rpm": lambda of: float(of.state.spindle.speed),
+    "_rpm": _speed_word,
     "_selected_tool": lambda of: float(of.state.selected_tool),
     "_current_tool": lambda of: float(of.state.tool),
     "_current_pocket": lambda of: float(of.state.tool),

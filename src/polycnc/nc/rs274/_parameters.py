@@ -28,7 +28,11 @@ _REFERENCES = {5160 // 20: 1, 5180 // 20: 2}
 
 
 class Parameters:
-    """Hold what programs set, and read the rest from the state of a channel; lengths are in the program's units."""
+    """Hold what programs set, and read the rest from the state of a channel.
+
+    Positions are in the units of the program. Offsets, reference positions and tools are in those of the machine, as
+    in the parameter file, whatever G20 and G21 say (LinuxCNC G-code manual, "G28": native machine units).
+    """
 
     def __init__(self) -> None:
         self.common = [0.0] * (LAST_COMMON + 1)
@@ -37,6 +41,7 @@ class Parameters:
         self._others: dict[int, float] = {}
         self._state: ChannelState | None = None
         self._machine: Machine | None = None
+        self._length_mm = 1.0
         self.filed: tuple[int, ...] = ()
         """The numbers in the file that the programs began with."""
 
@@ -54,24 +59,22 @@ class Parameters:
     def attach(self, state: ChannelState, machine: Machine) -> None:
         """Read from the state of a channel, and from its machine."""
         first, self._state, self._machine = self._machine is None, state, machine
+        self._length_mm = MM_PER_INCH if machine.config.programs.parameters_inch else 1.0
         if first and (file := machine.config.programs.parameter_file) is not None:
-            self.load(read_parameters(file), inch=machine.config.programs.parameters_inch)
+            self.load(read_parameters(file))
 
-    def load(self, values: Mapping[int, float], *, inch: bool) -> None:
-        """Begin with the parameters of a file, whose lengths are mm or inches.
+    def load(self, values: Mapping[int, float]) -> None:
+        """Begin with the parameters of a file.
 
         Work offsets, the reference positions, the shift of G92 and the work offset in force are taken over too.
         """
         self.filed = tuple(values)
         state = self.state
-        of_file = (MM_PER_INCH if inch else 1.0) / length_scale(state.modal)
         for index, value in values.items():
             if index <= LAST_LOCAL or 5400 <= index <= 5428 or index in (5210, 5220):
                 continue
-            at = self._axis_of(_place(index))
-            is_length = at is not None and not state.modal.rotary[at]
-            self.put(index, value * of_file if is_length else value, [])
-        coordinates = state.coordinates
+            self.put(index, value, [])
+        coordinates = replace(state.coordinates, selected=None)
         if values.get(5210):
             coordinates = replace(coordinates, shifted=True)
         system = round(values.get(5220, 1.0))
@@ -80,17 +83,8 @@ class Parameters:
         state.place_zero(coordinates)
 
     def file_text(self) -> str:
-        """Return the text of a file with the parameters of that one and all offsets, lengths in its units."""
-        assert self._machine is not None
-        inch = self._machine.config.programs.parameters_inch
-        to_file = length_scale(self.state.modal) / (MM_PER_INCH if inch else 1.0)
-
-        def value(index: int) -> float:
-            found = 0.0 if index <= LAST_LOCAL else self.get(index, [])
-            at = self._axis_of(_place(index))
-            return found * to_file if at is not None and not self.state.modal.rotary[at] else found
-
-        return parameters_text(self.filed, value)
+        """Return the text of a file with the parameters of that one and all offsets."""
+        return parameters_text(self.filed, lambda index: 0.0 if index <= LAST_LOCAL else self.get(index, []))
 
     @property
     def state(self) -> ChannelState:
@@ -125,16 +119,19 @@ class Parameters:
         if 0 <= system < len(WORK_SYSTEMS) and place == len(AXES):
             state.tables.set_turn(WORK_SYSTEMS[system], value)
         elif 0 <= system < len(WORK_SYSTEMS) and (at := self._axis_of(place)) is not None:
-            state.tables.set_offset(WORK_SYSTEMS[system], {at: value * self.unit(at)})
+            name = WORK_SYSTEMS[system]
+            if name == state.coordinates.work[0]:  # counts when it is selected anew
+                kept = state.coordinates.first_offset(state.tables)
+                state.coordinates = replace(state.coordinates, selected=kept)
+            state.tables.set_offset(name, {at: value * self._own_unit(at)})
         elif 5211 <= index <= 5219 and (at := self._axis_of(index - 5211)) is not None:
-            kept = state.coordinates.keeping_shift({at: value * self.unit(at)})
             if state.coordinates.shifted:
                 raise NumberError(f"#{index} while its shift is in force", "Suspend it with G92.2 first.")
-            state.coordinates = kept
+            state.coordinates = state.coordinates.keeping_shift({at: value * self._own_unit(at)})
         elif number := _REFERENCES.get(index // 20):
             point = list(state.reference(number))
             if (at := self._axis_of((index - 1) % 20)) is not None:
-                point[at] = value * self.unit(at)
+                point[at] = value * self._own_unit(at)
             first, second = state.references
             state.references = (tuple(point), second) if number == 1 else (first, tuple(point))
 
@@ -197,17 +194,17 @@ class Parameters:
         if 5221 <= index <= 5400 - 10:
             system, axis = divmod(index - 5221, 20)
             if axis < len(AXES):
-                return self._axis(axis, state.tables.work_offset(WORK_SYSTEMS[system]))
+                return self._own(axis, state.tables.work_offset(WORK_SYSTEMS[system]))
             if axis == len(AXES):
                 return state.tables.turn_of(WORK_SYSTEMS[system])
         elif 5211 <= index <= 5219:
-            return self._axis(index - 5211, shifts.shift.tolist())
+            return self._own(index - 5211, shifts.shift.tolist())
         elif index == 5210:
             return float(shifts.shifted)
         elif index == 5220:
             return WORK_SYSTEMS.index(shifts.work[0]) + 1.0 if shifts.work[0] in WORK_SYSTEMS else 1.0
         elif (number := _REFERENCES.get(index // 20)) and (index - 1) % 20 < len(AXES):
-            return self._axis((index - 1) % 20, state.reference(number))
+            return self._own((index - 1) % 20, state.reference(number))
         elif 5400 <= index <= 5413:
             return self._tool(index)
         elif 5420 <= index <= 5428:
@@ -223,12 +220,12 @@ class Parameters:
         if index == 5400:
             return float(state.tool)
         if index == 5410:
-            return 2.0 * tool.radius_mm / length_scale(state.modal)
+            return 2.0 * tool.radius_mm / self._length_mm
         if index == 5413:
             return float(TURNED_TIPS[tool.tip])
         shifts = offsets_of(state, tool)
         at = self._axis_of(index - 5401) if index < 5410 else None
-        return 0.0 if at is None else shifts.get(at, 0.0) / self.unit(at)
+        return 0.0 if at is None else shifts.get(at, 0.0) / self._own_unit(at)
 
     def _probed(self, place: int) -> float:
         """Return where the last probing move met something, by axis, or whether it did."""
@@ -259,6 +256,14 @@ class Parameters:
         modal = self.state.modal
         return 1.0 if modal.rotary[axis] else length_scale(modal)
 
+    def _own_unit(self, axis: int) -> float:
+        """Return what 1 counts along an axis in the units of the machine, mm or degree."""
+        return 1.0 if self.state.modal.rotary[axis] else self._length_mm
+
+    def _own(self, place: int, vector: Sequence[float]) -> float:
+        at = self._axis_of(place)
+        return 0.0 if at is None else float(vector[at]) / self._own_unit(at)
+
     def _axis_of(self, place: int) -> int | None:
         if not 0 <= place < len(AXES):
             return None
@@ -268,15 +273,6 @@ class Parameters:
     def _axis(self, place: int, vector: Sequence[float]) -> float:
         at = self._axis_of(place)
         return 0.0 if at is None else float(vector[at]) / self.unit(at)
-
-
-def _place(index: int) -> int:
-    """Return which axis a parameter belongs to, -1 for none."""
-    if 5221 <= index <= 5390:
-        return (index - 5221) % 20
-    if 5161 <= index <= 5189 or 5210 < index <= 5219:
-        return (index - 1) % (20 if index < 5200 else 10)
-    return -1
 
 
 def _index(number: float) -> int:

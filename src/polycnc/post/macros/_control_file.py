@@ -10,7 +10,7 @@ from importlib import resources
 from pathlib import Path
 from typing import Any
 
-from polycnc.errors import ConfigurationError, SourcePosition, UsageError
+from polycnc.errors import ConfigurationError, SourcePosition, UsageError, did_you_mean
 from polycnc.language import Flaw
 from polycnc.machine import KeyPath, Locator, parse_toml, validate
 from polycnc.nc import load_dialect
@@ -88,7 +88,7 @@ def load_control(source: str | Path) -> ControlFile:
     except FileNotFoundError:
         raise UsageError(
             f"there is no control file '{source}'",
-            hint=f"Use {', '.join(CONTROLS)}, or the path of a control file.",
+            hint=f"{did_you_mean(str(source), CONTROLS)}Use {', '.join(CONTROLS)}, or the path of a control file.",
         ) from None
     except (OSError, ValueError) as error:  # ValueError: no file can have this name
         why = error.strerror if isinstance(error, OSError) else error

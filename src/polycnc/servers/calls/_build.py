@@ -47,7 +47,14 @@ TARGETS = {
     "linux": Target(
         ("gcc", "cc", "clang"),
         "lib{name}.so",
-        ("-shared", "-fPIC", "-s", "-fvisibility=hidden", "-pthread"),
+        (
+            "-shared",
+            "-fPIC",
+            "-s",
+            "-fvisibility=hidden",
+            "-pthread",
+            "-Wl,-z,nodelete",
+        ),  # it may have a thread
         "Install gcc: on Debian, apt-get install gcc.",
     ),
     "macos": Target(

@@ -57,12 +57,15 @@ class _Prepared:
 class Caller:
     """Carry out calls of one client, in its session of the façade.
 
-    `ways` takes the place of functions that are different for a client elsewhere.
+    `ways` takes the place of functions that are different for a client elsewhere. From when it `listens` on, the client
+    waits for the interrupts of a board: `push` sends it the bits of the lines.
     """
 
     library: CLibrary
     session: Session
     ways: dict[str, Callable[..., Any]] = field(default_factory=dict)
+    listens: bool = False
+    push: Callable[[int], None] = lambda _: None
     _handles: dict[int, Any] = field(default_factory=dict)
     _prepared: dict[int, _Prepared] = field(default_factory=dict)
 

@@ -15,9 +15,11 @@ from polycnc.servers.machines import AS_USUAL, Treatment
 MAGIC = b"PNCCALL1"
 _HELLO = struct.Struct("<8sBBH16s16s16s")
 _WELCOME = struct.Struct("<8si")
-_HEAD = struct.Struct("<HH")
 _SIZE = struct.Struct("<I")
-_BEGIN = _SIZE.size + _HEAD.size
+_HEAD = struct.Struct("<IHH")
+_INTERRUPT = struct.Struct("<IHHi")
+_BEGIN = _HEAD.size
+_LEAST = _HEAD.size - _SIZE.size
 _MOST = 65536
 _MOST_BEHIND = 4 * _MOST  # bytes that wait to be carried out
 _WIDTHS = (4, 8)
@@ -57,7 +59,7 @@ class CallClient:
     `find` returns the caller for a library and a packing, or None if no machine here has it. `tell` is told in a
     sentence what was refused. Whole frames are carried out one after the other. `treat` counts a call and says how it
     is to be treated: what is dropped ends the connection behind the answers before it and is not carried out, and
-    `delay_s` is how much later all answers of the last bytes come.
+    `delay_s` is how much later all answers of the last bytes come. `push` sends what comes unasked, interrupts.
     """
 
     find: Callable[[str, int], Caller | None]
@@ -65,6 +67,7 @@ class CallClient:
     trace: Trace | None = None
     now_s: Callable[[], float] = lambda: 0.0
     treat: Callable[[], Treatment] = lambda: AS_USUAL
+    push: Callable[[bytes], None] = lambda _: None
     ended: bool = False
     delay_s: float = 0.0
     caller: Caller | None = None
@@ -75,19 +78,18 @@ class CallClient:
         """Carry out what is whole with these bytes."""
         if self.ended:
             return b""
-        behind = self._behind
-        if behind:
-            behind += data
         self.delay_s = 0.0
-        sent = list[bytes]()
+        sent: list[bytes] = []
         try:
-            if len(behind) > _MOST_BEHIND:
-                raise CallError(f"more than {_MOST_BEHIND} bytes wait")
-            at = self._go(behind or data, sent)
-            if behind:
-                del behind[:at]
+            if not self._behind:
+                at = self._go(data, sent)
+                if at != len(data):
+                    self._behind += data[at:]
             else:
-                behind += data[at:]
+                self._behind += data
+                if len(self._behind) > _MOST_BEHIND:
+                    raise CallError(f"more than {_MOST_BEHIND} bytes wait")
+                del self._behind[: self._go(self._behind, sent)]
         except CallError as error:
             self.tell(str(error))
             self.ended = True
@@ -109,15 +111,14 @@ class CallClient:
                 sent.append(self._welcomed(bytes(there[: _HELLO.size])))
                 at = _HELLO.size
                 continue
-            if most - at < _SIZE.size:
+            if most - at < _BEGIN:
+                if most - at >= _SIZE.size:
+                    _checked(*_SIZE.unpack_from(there, at))
                 break
-            (size,) = _SIZE.unpack_from(there, at)
-            if not _HEAD.size <= size <= _MOST - _SIZE.size:
-                raise CallError(f"a frame of {size} bytes")
-            end = at + _SIZE.size + size
+            size, number, serial = _HEAD.unpack_from(there, at)
+            end = at + _checked(size)
             if most < end:
                 break
-            number, serial = _HEAD.unpack_from(there, at + _SIZE.size)
             answer = self._answered(self.caller, number, serial, bytes(there[at + _BEGIN : end]))
             if answer is None:
                 break
@@ -150,8 +151,20 @@ class CallClient:
             self.ended = True
             return _WELCOME.pack(MAGIC, caller.library.version)
         self.caller = caller
+        caller.push = lambda lines: self.push(_INTERRUPT.pack(_INTERRUPT.size - _SIZE.size, 0, 0, lines))
         self.number = 0 if self.trace is None else self.trace.next_client()
         return _WELCOME.pack(MAGIC, 0)
+
+
+def _checked(size: int) -> int:
+    """Return how many bytes a frame has that says how many follow.
+
+    Raises:
+        CallError: They are too few or too many.
+    """
+    if not _LEAST <= size <= _MOST - _SIZE.size:
+        raise CallError(f"a frame of {size} bytes")
+    return _SIZE.size + size
 
 
 def _unfit(hello: Hello, library: CLibrary) -> str:

@@ -84,7 +84,8 @@ class Layout:
         return head + b"".join(outputs)
 
     def _one_by_one(self, packed: bytes) -> list[Given]:
-        at, given = 0, list[Given]()
+        at = 0
+        given: list[Given] = []
         for slot, value in zip(self.call.slots, self._values, strict=True):
             if slot.way is Way.VALUE:
                 given.append(Given(slot, self._number(value, packed, at), 0))

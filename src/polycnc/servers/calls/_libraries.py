@@ -8,7 +8,7 @@ from pathlib import PureWindowsPath
 from typing import Any
 
 from polycnc.controllers.library.clib import CLibrary
-from polycnc.errors import UsageError
+from polycnc.errors import UsageError, did_you_mean
 from polycnc.machine import Way
 from polycnc.servers.calls._caller import Caller
 
@@ -79,7 +79,19 @@ def _call_mcug3(library: CLibrary, devices: Sequence[Any], clock: Way | None = N
             *(PureWindowsPath(each).name if isinstance(each, str) else each for each in given)
         )
 
-    return Caller(library, session, {name: beside(name) for name in _OF_FILES})
+    def set_routine(what: int) -> int:
+        """Listen to a board, numbered from 1; return the number of the selected one, from 0, where `what` is 0."""
+        lines = list(session.lines.values())
+        if not what:
+            return session.application.selected
+        if not 0 < what <= len(lines):
+            return library.null
+        caller.listens = True
+        return lines[what - 1].set_routine(lambda bits: caller.push(bits))
+
+    ways: dict[str, Callable[..., Any]] = {name: beside(name) for name in _OF_FILES}
+    caller = Caller(library, session, ways | {"MCUG3_SetBoardIntRoutine": set_routine})
+    return caller
 
 
 _OF_FILES = ("InitMcuSystem2", "InitMcuSystem3", "txbf", "txbf2")
@@ -99,5 +111,8 @@ def library_of(kind: str) -> CLibrary:
         UsageError: There is none.
     """
     if kind not in LIBRARIES:
-        raise UsageError(f"there is no C library of '{kind[:40]}'", hint=f"There are {', '.join(LIBRARIES)}.")
+        raise UsageError(
+            f"there is no C library of '{kind[:40]}'",
+            hint=f"{did_you_mean(kind, LIBRARIES)}There are {', '.join(LIBRARIES)}.",
+        )
     return LIBRARIES[kind].load()

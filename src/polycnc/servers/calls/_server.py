@@ -12,11 +12,13 @@ from polycnc.errors import UsageError
 from polycnc.servers.calls._caller import Caller
 from polycnc.servers.calls._client import CallClient
 from polycnc.servers.calls._libraries import LIBRARIES
+from polycnc.servers.calls._linger import Linger
 from polycnc.servers.calls._trace import Trace
 from polycnc.servers.machines import AS_USUAL, LOOPBACK, Log, ServedMachine, Treatment, notice_loss, peers_of
 
 _MOST_CLIENTS = 256
 _HELLO_S = 10.0
+_ATTENTION_S = 0.01  # how late a client that listens hears of an interrupt
 _READ = 16_384  # bytes at once
 
 
@@ -116,7 +118,8 @@ class _Line(asyncio.BufferedProtocol):
     def __init__(self, server: CallsServer) -> None:
         self._server = server
         self._machines: list[ServedMachine] = []
-        self._client = CallClient(self._find, server.tell, server.trace, self._now_s, self._treat)
+        self._client = CallClient(self._find, server.tell, server.trace, self._now_s, self._treat, self._push)
+        self._attention: asyncio.TimerHandle | None = None
         self._later: asyncio.TimerHandle | None = None
         self._waiting = b""  # what is sent then
         self._is_full = False  # the peer takes nothing
@@ -143,6 +146,7 @@ class _Line(asyncio.BufferedProtocol):
         assert isinstance(transport, asyncio.Transport)
         self.transport = transport
         notice_loss(transport)
+        self._linger = Linger(transport, self._buffer)
         if len(self._server.lines) >= _MOST_CLIENTS:
             self._server.tell(f"more than {_MOST_CLIENTS} clients")
             transport.abort()
@@ -155,6 +159,22 @@ class _Line(asyncio.BufferedProtocol):
 
     def buffer_updated(self, nbytes: int) -> None:
         self.take(bytes(self._buffer[:nbytes]))
+        if self._machines:
+            for count in self._linger.received():
+                self.take(bytes(self._buffer[:count]))
+
+    def _push(self, sent: bytes) -> None:
+        """Send an interrupt, unless the client takes none."""
+        if self._later is not None:
+            self._waiting += sent
+        elif not (self._is_full or self.transport.is_closing()):
+            self.transport.write(sent)
+
+    def _attend(self) -> None:
+        """Let time pass for a client that listens, until its connection ends."""
+        for each in self._machines:
+            each.keeper.submit(lambda: None, lambda _: None)
+        self._attention = asyncio.get_running_loop().call_later(_ATTENTION_S, self._attend)
 
     def take(self, data: bytes) -> None:
         """Carry out what is whole with these bytes."""
@@ -190,6 +210,8 @@ class _Line(asyncio.BufferedProtocol):
             self._limit = None
         if self._client.ended:
             self.transport.close()
+        elif self._attention is None and self._client.caller is not None and self._client.caller.listens:
+            self._attend()
 
     def pause_writing(self) -> None:
         self._is_full = True
@@ -202,10 +224,12 @@ class _Line(asyncio.BufferedProtocol):
 
     def connection_lost(self, error: Exception | None) -> None:
         self._server.lines.discard(self)
+        self._linger.close()
         if self._later is not None:
             self._later.cancel()
-        if self._limit is not None:
-            self._limit.cancel()
+        for timer in (self._limit, self._attention):
+            if timer is not None:
+                timer.cancel()
         caller = self._client.caller
         if caller is not None:
             self._client.ended = True

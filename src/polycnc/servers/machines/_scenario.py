@@ -61,11 +61,21 @@ class ServedDevice(Generic[D]):
         self.scenario: Scenario[D] = scenario or Nothing()
         self.again = again
         self._watches: list[Watch] = []
+        self._wanted: list[Callable[[], bool]] = []
         self.scenario.look(device)
 
-    def watch(self, look: Callable[[], object]) -> None:
-        """Call `look` from now on at times of the device's own clock, 10 times a second while something happens."""
-        self._watches.append(Watch(self.clock, lambda: self.busy, look))
+    def watch(self, look: Callable[[], object], wanted: Callable[[], bool] = lambda: True) -> None:
+        """Call `look` from now on once a second of the device's own clock, ten times while something happens.
+
+        Where `wanted` says that nobody wants to see it, once a second is enough.
+        """
+        self._wanted.append(wanted)
+        self._watches.append(Watch(self.clock, lambda: wanted() and self.busy, look))
+
+    @property
+    def is_followed(self) -> bool:
+        """Whether somebody wants to see what happens in it as soon as it does."""
+        return any(wanted() for wanted in self._wanted)
 
     @property
     def clock(self) -> Clock:

@@ -4,7 +4,7 @@ from typing import TYPE_CHECKING
 
 from polycnc.on_demand import names_on_demand
 from polycnc.servers.mtconnect._agent import Agent, Answer, StreamAsked
-from polycnc.servers.mtconnect._device import DeviceModel, Item, asset_id, device_model, model_of, value_text
+from polycnc.servers.mtconnect._device import DeviceModel, Item, device_model, model_of, value_text
 from polycnc.servers.mtconnect._documents import Header, asset_text, devices_document
 from polycnc.servers.mtconnect._errors import AgentError, Code
 from polycnc.servers.mtconnect._observations import Buffer, Observation
@@ -49,7 +49,6 @@ __all__ = [
     "StreamAsked",
     "Version",
     "asked_of",
-    "asset_id",
     "asset_text",
     "choose",
     "device_model",

@@ -6,7 +6,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 from polycnc.cnc import Tool
-from polycnc.servers.mtconnect._device import asset_id, plain_text
+from polycnc.servers.mtconnect._device import plain_text
+from polycnc.servers.plant import asset_id
 
 MOST_ASSETS = 4096
 CUTTING_TOOL = "CuttingTool"

@@ -6,8 +6,9 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 from math import isfinite
+from typing import Any
 
-from polycnc.cnc import Control
+from polycnc.cnc import AxisStatus, ChannelStatus, Control, Status
 from polycnc.servers.mtconnect._rows import (
     CONDITION_SCOPES,
     CONDITIONS,
@@ -17,7 +18,7 @@ from polycnc.servers.mtconnect._rows import (
     Row,
     Version,
 )
-from polycnc.servers.plant import FACTS, About, Place, Scope, Seen, Shape, Value, places, shape_of
+from polycnc.servers.plant import FACTS, About, Place, Scope, Seen, Shape, Value, asset_id, places, shape_of
 
 _DIGITS = 4
 MOST_TEXT = 255
@@ -28,7 +29,8 @@ MOST_TEXT = 255
 class Item:
     """A data item; `read` returns its value, which `write` makes a text of, None where there is none now.
 
-    What is not read of a status (conditions, messages, assets) has no `read`.
+    It gets what `part_of` returns for the item's `place`. What is not read of a status (conditions, messages, assets)
+    has no `read`.
     """
 
     id: str
@@ -40,7 +42,8 @@ class Item:
     system: str = ""
     representation: str = ""
     discrete: bool = False
-    read: Callable[[Seen], Value] | None = None
+    read: Callable[[Seen, Any], Value] | None = None
+    place: Place | None = None
     write: Callable[[Value], str | None] = field(default=lambda value: value_text(value))
     about: tuple[About, str, int] | None = None  # of a condition: what, of which axis and channel
 
@@ -105,11 +108,6 @@ class DeviceModel:
         return {item.type: item for item in found}
 
 
-def asset_id(device: str, number: int) -> str:
-    """Return what a tool of a machine is called as an asset."""
-    return f"{device}.T{number}"
-
-
 def number_text(value: float) -> str:
     """Return a number as documents have it: at most four decimals, no exponent, no minus zero."""
     text = f"{value:.{_DIGITS}f}".rstrip("0").rstrip(".")
@@ -141,18 +139,18 @@ def value_text(value: Value) -> str | None:
             return " ".join(map(number_text, value))
 
 
-def _reader(row: Row, place: Place) -> Callable[[Seen], Value]:
-    read = FACTS[row.fact].read
-    number, name, share = place.number, place.name, row.share
-    if share != 1.0:  # a number of a channel
-        return lambda seen: share * read(seen, seen.status.channels[number])  # type: ignore[operator]
-    match place.scope:
-        case Scope.CHANNEL:
-            return lambda seen: read(seen, seen.status.channels[number])
-        case Scope.AXIS:
-            return lambda seen: read(seen, seen.status.axes[name])
-        case _:
-            return lambda seen: read(seen, None)
+def part_of(place: Place, status: Status) -> ChannelStatus | AxisStatus | None:
+    """Return the part of a status that the items of a place are read of: a channel, an axis, or none of its own."""
+    if place.scope is Scope.CHANNEL:
+        return status.channels[place.number]
+    return status.axes[place.name] if place.scope is Scope.AXIS else None
+
+
+def _reader(row: Row) -> Callable[[Seen, Any], Value]:
+    read, share = FACTS[row.fact].read, row.share
+    if share == 1.0:
+        return read
+    return lambda seen, of: share * read(seen, of)  # type: ignore[operator]
 
 
 def _key(pattern: str, place: Place) -> str:
@@ -208,7 +206,8 @@ class _Maker:
             row.subtype if self._version >= row.subtype_since else "",
             row.units(place.unit) if row.sample else "",
             row.system,
-            read=_reader(row, place),
+            read=_reader(row),
+            place=place,
             write=value_text if words is None else words.get,
         )
 
@@ -218,14 +217,14 @@ class _Maker:
 
     def tool_asset(self, place: Place) -> Item:
         """Return the item that names the tool in the spindle as an asset."""
-        name, number = self._name, place.number
+        name = self._name
 
-        def read(seen: Seen) -> str | None:
-            tool = seen.status.channels[number].tool.number
+        def read(seen: Seen, channel: ChannelStatus) -> str | None:
+            tool = channel.tool.number
             return asset_id(name, tool) if tool in seen.inventory.tools else None
 
         key = _key("tool_asset_id{}", place)
-        return Item(self.id_of(key), key, "EVENT", "TOOL_ASSET_ID", read=read)
+        return Item(self.id_of(key), key, "EVENT", "TOOL_ASSET_ID", read=read, place=place)
 
     def special(self, key: str, kind: str, since: Version, **more: str) -> list[Item]:
         """Return a data item that is not read of a status, if the version has it."""

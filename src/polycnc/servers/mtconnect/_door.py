@@ -31,6 +31,7 @@ from polycnc.servers.plant import Seen, see
 PORT = 5000
 _XML, _JSON = b"text/xml; charset=utf-8", b"application/json"
 _BOUNDARY = b"polycnc-a1f04c9b7d3e"
+_WANTED_S = 60.0  # of the machine's time, after which nobody seems to want to see what happens
 _LEAST_BEAT_S = 0.01  # between two pieces of a stream, whatever interval is asked for
 _MOST_STREAMS = 100
 _MOST_WAIT_S = 30.0  # for a client that does not read
@@ -52,7 +53,7 @@ class Observed:
         for number, machine in enumerate(machines):
             look = _Look(self.agent, number, machine)
             look()
-            machine.served.watch(look)
+            machine.served.watch(look, look.is_wanted)
             self._looks.append(look)
 
     async def look(self, asked: Asked) -> None:
@@ -63,7 +64,7 @@ class Observed:
         """
         for number in self.agent.numbers(asked):
             try:
-                await self._machines[number].ask(self._looks[number])
+                await self._machines[number].ask(self._looks[number].for_client)
             except AgentError:
                 raise
             except PolycncError as error:
@@ -78,6 +79,18 @@ class _Look:
         self._number = number
         assert machine.find_control is not None
         self._see = see(machine.find_control)
+        self._clock = machine.served.clock
+        self._most_cycles = self._clock.cycles_for(_WANTED_S)
+        self._asked = self._clock.cycles
+
+    def is_wanted(self) -> bool:
+        """Tell whether a client has asked in the last minute of the machine's time, or the machine is that young."""
+        return abs(self._clock.cycles - self._asked) < self._most_cycles
+
+    def for_client(self) -> None:
+        """Look, as a client asks."""
+        self._asked = self._clock.cycles
+        self()
 
     def __call__(self) -> None:
         seen: Seen = self._see()

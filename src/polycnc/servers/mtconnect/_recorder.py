@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from collections.abc import Callable
+from typing import Any, NamedTuple
 
-from polycnc.cnc import Status
+from polycnc.cnc import Inventory, Status
 from polycnc.servers.mtconnect._assets import CUTTING_TOOL, Asset, Assets
-from polycnc.servers.mtconnect._device import DeviceModel, Item, plain_text
+from polycnc.servers.mtconnect._device import DeviceModel, Item, part_of, plain_text
 from polycnc.servers.mtconnect._observations import FAULT, NORMAL, UNAVAILABLE
-from polycnc.servers.plant import Seen, Trouble, Value, troubles
+from polycnc.servers.plant import Place, Scope, Seen, Trouble, Value, troubles
+
+_OWN = (Scope.AXIS, Scope.SPINDLE)
 
 
 class Change(NamedTuple):
@@ -36,12 +39,31 @@ def time_text(status: Status) -> str:
     return status.now.isoformat(timespec="milliseconds") + "Z"
 
 
+class _Group:
+    """The items of one place, each with its number in the device; `part` is what they were read of last."""
+
+    def __init__(self, place: Place) -> None:
+        self.place = place
+        self.part: object = None
+        self.rows: list[tuple[int, Callable[[Seen, Any], Value]]] = []
+
+
+_NEVER: Any = object()
+
+
 class Recorder:
     """Look at one machine; the first look brings every data item."""
 
     def __init__(self, device: DeviceModel) -> None:
         self._device = device
-        self._values: list[Value] = []
+        groups: dict[Place, _Group] = {}
+        for number, item in enumerate(device.values):
+            assert item.read is not None
+            assert item.place is not None
+            groups.setdefault(item.place, _Group(item.place)).rows.append((number, item.read))
+        self._groups = tuple(groups.values())
+        self._values: list[Value] = [_NEVER] * len(device.values)
+        self._inventory: Inventory | None = None
         self._texts: dict[Item, str] = {}
         self._last: Status | None = None
         self._troubles: dict[str, Trouble] = {}
@@ -55,11 +77,7 @@ class Recorder:
         if status is self._last and seen.inventory.tools is self.assets.tools:
             return Looked(time, [], [])
         first, self._last = self._last is None, status
-        changes: list[Change] = []
-        values = [item.read(seen) for item in self._device.values if item.read is not None]
-        if first or values != self._values:
-            changes += self._of_values(values, first)
-            self._values = values
+        changes = self._of_values(seen)
         if first:
             changes += [Change(item, NORMAL) for item in self._device.conditions.values()]
         changes += self._of_troubles(status)
@@ -67,19 +85,38 @@ class Recorder:
         tools = self._of_tools(seen, time, first, changes)
         return Looked(time, changes, tools)
 
-    def _of_values(self, values: list[Value], first: bool) -> list[Change]:
-        """Return the items whose text has changed."""
+    def _of_values(self, seen: Seen) -> list[Change]:
+        """Return the items whose text has changed, in the order of the device."""
+        status, values = seen.status, self._values
+        same_inventory = seen.inventory is self._inventory
+        self._inventory = seen.inventory
+        changed: list[int] = []
+        for group in self._groups:
+            of = part_of(group.place, status)
+            if (
+                group.place.scope in _OWN
+            ):  # all of it is in one part: an axis at rest is not read item by item
+                part = of or status.spindle
+                if same_inventory and part == group.part:
+                    continue
+                group.part = part
+            for number, read in group.rows:
+                value = read(seen, of)
+                if value != values[number]:
+                    values[number] = value
+                    changed.append(number)
         changes = []
-        before = values if first else self._values
-        for item, new, old in zip(self._device.values, values, before, strict=True):
-            if first or new != old:
-                text = item.write(new) or UNAVAILABLE
-                if text != self._texts.get(item):
-                    self._texts[item] = text
-                    changes.append(Change(item, text))
+        for number in sorted(changed):
+            item = self._device.values[number]
+            text = item.write(values[number]) or UNAVAILABLE
+            if text != self._texts.get(item):
+                self._texts[item] = text
+                changes.append(Change(item, text))
         return changes
 
     def _of_troubles(self, status: Status) -> list[Change]:
+        if not status.alarms and not self._troubles:
+            return []
         now = {each.key: each for each in troubles(status)}
         if now == self._troubles:
             return []
@@ -111,6 +148,8 @@ class Recorder:
         return [Change(item, plain_text(each.text), str(each.number)) for each in new]
 
     def _of_tools(self, seen: Seen, time: str, first: bool, changes: list[Change]) -> list[Asset]:
+        if not first and seen.inventory.tools is self.assets.tools:
+            return []
         before = self.assets.count
         changed, removed = self.assets.update(seen.inventory.tools, time)
         special = self._device.special

@@ -22,13 +22,14 @@ from polycnc.servers.opcua import _machine_tool as tool
 from polycnc.servers.opcua._alarms import AlarmEvents
 from polycnc.servers.opcua._bounds import CHUNK_BYTES, MESSAGE_BYTES, MOST_CHUNKS, Listener, Subscriptions
 from polycnc.servers.opcua._identity import Users, application_uri, identity_of
+from polycnc.servers.opcua._lists import Lists
 from polycnc.servers.opcua._model import MACHINE_TOOL, MACHINERY, SPACES
-from polycnc.servers.opcua._moment import Fixed
+from polycnc.servers.opcua._moment import PRODUCTION_STATES, Fixed
 from polycnc.servers.opcua._node_sets import find_node_sets, load_node_sets
 from polycnc.servers.opcua._publish import Publisher
 from polycnc.servers.opcua._space import Space
 from polycnc.servers.opcua._standard import bounded_server
-from polycnc.servers.opcua._tree import MESSAGES, channel_path, interface_items, machine_tool_items
+from polycnc.servers.opcua._tree import JOB, MESSAGES, channel_path, interface_items, machine_tool_items
 from polycnc.servers.opcua._writes import Writes
 
 PORT = 4840
@@ -149,7 +150,7 @@ class OpcuaDoor:
              _POLICY.Basic256Sha256_SignAndEncrypt, _POLICY.Basic256Sha256_Sign]
         )  # fmt: skip
         server.set_identity_tokens(_TOKENS[local and self._wanted.token is None])
-        inner.treat = self._treat
+        inner.treat, inner.before = self._treat, self._refresh
         inner.callback_service.addListener(CallbackType.PreRead, self._before_read)
 
     async def _name(self, server: Server) -> None:
@@ -170,9 +171,14 @@ class OpcuaDoor:
             f"channel {number}": ua.NodeId(f"{name}/{channel_path(number)}", space.own)
             for number in range(len(machine.control.channels))
         }
-        nodes |= {word: ua.NodeId(number, state_space) for word, number in tool.STATE_NODES.items()}
-        fixed = Fixed.of(name, machine.control, nodes)
+        nodes |= {
+            f"{machine_name} {word}": ua.NodeId(number, state_space)
+            for machine_name, of in (("program", tool.PRODUCTION_STATE), ("job", tool.JOB_STATE))
+            for word, number in zip(PRODUCTION_STATES, tool.STATE_NODES[of], strict=True)
+        }
         place = f"Machines/{name}"
+        nodes |= {"job": space.at(place, JOB), "none": ua.NodeId()}
+        fixed = Fixed.of(name, machine.control, nodes)
         folder = ua.NodeId(tool.MACHINES_NUMBER, space.index[MACHINERY])
         bound = space.add_items(name, ua.NodeId(_OBJECTS), name, interface_items(fixed), fixed)
         bound += space.add_items(place, folder, name, machine_tool_items(fixed), fixed)
@@ -189,7 +195,9 @@ class OpcuaDoor:
             (await _event(server, space.node_of(tool.ALERT)), "ErrorCode", (messages,)),
         ]
         alarms = AlarmEvents(server.iserver.subscription_service, kinds, name, interface)
-        publisher = Publisher(machine, fixed, bound, server.iserver.aspace, space.index, alarms)
+        changes = await _event(server, ua.NodeId(ua.ObjectIds.GeneralModelChangeEventType))
+        lists = Lists(space, place, fixed, changes, server.iserver.subscription_service.trigger_event)
+        publisher = Publisher(machine, fixed, bound, server.iserver.aspace, space.index, lists, alarms)
         for each in bound:
             if each.member.write is not None:
                 writes.add(publisher, each)

@@ -6,16 +6,28 @@ from polycnc import __version__
 from polycnc.servers.opcua import _moment as words
 from polycnc.servers.opcua._cnc import VENDOR
 from polycnc.servers.opcua._model import DI, MACHINE_TOOL, MACHINERY, Enumeration, Member, Type
-from polycnc.servers.opcua._moment import PRODUCTION_STATES, Of
+from polycnc.servers.opcua._moment import PRODUCTION_STATES, At, Of
+from polycnc.servers.plant import asset_id
 
 ENUMERATIONS = (
     Enumeration("MachineOperationMode", MACHINE_TOOL, 65, words.MACHINE_MODES),
     Enumeration("ChannelMode", MACHINE_TOOL, 67, words.CHANNEL_MODES),
     Enumeration("ChannelState", MACHINE_TOOL, 64, words.CHANNEL_STATES),
+    Enumeration("ToolManagement", MACHINE_TOOL, 69, words.TOOL_MANAGEMENT),
+    Enumeration("ToolLocked", MACHINE_TOOL, 66, words.TOOL_LOCKED),
 )
-STATE_NODES = {"Initializing": 135, "Running": 138, "Ended": 140, "Interrupted": 139, "Aborted": 141}
-"""The states of the production state machine, by the number of their node."""
 _HOUR_S = 3600
+
+
+def _version(at: At) -> str:
+    return str(at.versions.get(at.name, 0))
+
+
+def _description(at: At) -> str:
+    """Return what the tool table says of a tool; nothing while it is being taken out of the list."""
+    tool = at.seen.inventory.tools.get(int(at.name))
+    return "" if tool is None else tool.description
+
 
 GROUP = Type("FunctionalGroupType", DI, 1005, 61)
 ITEM_IDENTIFICATION = Type("MachineryItemIdentificationType", MACHINERY, 1004, GROUP, (
@@ -61,22 +73,65 @@ OPERATION = Type("MachineOperationMonitoringType", MACHINE_TOOL, 26, 58, (
 ))  # fmt: skip
 MONITORING = Type("MonitoringType", MACHINE_TOOL, 14)
 
+
+def _state(fact: str, machine: str) -> tuple[Member, ...]:
+    """Return what a state machine shows of a fact that is one of the production states."""
+    return (
+        Member("CurrentState", "LocalizedText", Of(fact, str.capitalize), space=""),
+        Member("CurrentState/Id", "NodeId", lambda at: at.fixed.nodes[f"{machine} {at.read(fact).capitalize()}"],
+            prop=True, space=""),
+        Member("CurrentState/Number", "UInt32", Of(fact, words.word_of(PRODUCTION_STATES)), prop=True, space=""),
+    )  # fmt: skip
+
+
 PRODUCTION_MACHINE = Type("ProductionStateMachineType", MACHINE_TOOL, 24, 2771)
-PRODUCTION_STATE = Type("ProductionProgramStateMachineType", MACHINE_TOOL, 15, PRODUCTION_MACHINE, (
-    Member("CurrentState", "LocalizedText", Of("production", str.capitalize), space=""),
-    Member("CurrentState/Id", "NodeId", lambda at: at.fixed.nodes[at.read("production").capitalize()],
-        prop=True, space=""),
-    Member("CurrentState/Number", "UInt32", Of("production", words.word_of(PRODUCTION_STATES)), prop=True, space=""),
-))  # fmt: skip
+PRODUCTION_STATE = Type("ProductionProgramStateMachineType", MACHINE_TOOL, 15, PRODUCTION_MACHINE,
+    _state("production", "program"))  # fmt: skip
+JOB_STATE = Type("ProductionJobStateMachineType", MACHINE_TOOL, 28, PRODUCTION_MACHINE, _state("job", "job"))
+STATE_NODES = {
+    PRODUCTION_MACHINE: (135, 138, 140, 139, 141), PRODUCTION_STATE: (5039, 5041, 5038, 5040, 5037),
+    JOB_STATE: (5015, 5017, 5014, 5016, 5013),
+}  # fmt: skip
+"""The nodes of the states of each state machine, in the order of their numbers."""
 PROGRAM = Type("ProductionProgramType", MACHINE_TOOL, 59, 58, (
     Member("Name", "String", Of("program", otherwise=""), 193, prop=True),
     Member("NumberInList", "UInt16", lambda at: 0, 230, prop=True, space=""),
 ))  # fmt: skip
-ACTIVE_PROGRAM = Type("ProductionActiveProgramType", MACHINE_TOOL, 32, PROGRAM)
+ACTIVE_PROGRAM = Type("ProductionActiveProgramType", MACHINE_TOOL, 32, PROGRAM, (
+    Member("JobIdentifier", "String", Of("program", otherwise=""), 384, optional=True),
+    Member("JobNodeId", "NodeId", lambda at: at.fixed.nodes["job" if at.read("program") else "none"], 382,
+        optional=True),
+))  # fmt: skip
+JOB = Type("ProductionJobType", MACHINE_TOOL, 29, 58, (
+    Member("Identifier", "String", Of("program", otherwise=""), 189, prop=True),
+    Member("NumberInList", "UInt16", lambda at: 0, 196, prop=True, space=""),
+    Member("RunsPlanned", "UInt32", Of("parts_wanted"), 192),
+    Member("RunsPlanned/IsValid", "Boolean", Of("parts_wanted", bool), prop=True),
+    Member("RunsCompleted", "UInt32", Of("parts"), 191),
+))  # fmt: skip
+ORDERED_LIST = 23518
+"""The list of OPC 10000-5 that others stand on."""
+JOBS = Type("ProductionJobListType", MACHINE_TOOL, 30, ORDERED_LIST, (
+    Member("NodeVersion", "String", _version, prop=True, space="", optional=True),
+))  # fmt: skip
+PROGRAMS = Type("OrderedListType", "", ORDERED_LIST)
 STATISTICS = Type("ProductionStatisticsType", MACHINE_TOOL, 20, 58, (
     Member("PartsProducedInLifetime", "UInt32", Of("parts_total"), 236, optional=True),
 ))  # fmt: skip
 PRODUCTION = Type("ProductionType", MACHINE_TOOL, 21)
+BASE_TOOL = Type("BaseToolType", MACHINE_TOOL, 49, 58, (
+    Member("Identifier", "String", lambda at: asset_id(at.fixed.name, int(at.name)), 316, prop=True, optional=True),
+    Member("Name", "String", _description, 176, prop=True, optional=True),
+), abstract=True)  # fmt: skip
+TOOL = Type("ToolType", MACHINE_TOOL, 50, BASE_TOOL, (
+    Member("ControlIdentifier1", "UInt32", lambda at: int(at.name), 178),
+    Member("ControlIdentifierInterpretation", "ToolManagement", lambda at: 0, 296),
+    Member("Locked", "Boolean", lambda at: False, 321),
+    Member("Locked/ReasonForLocking", "ToolLocked", lambda at: 0, prop=True),
+))  # fmt: skip
+TOOLS = Type("ToolListType", MACHINE_TOOL, 44, 58, (
+    Member("NodeVersion", "String", _version, 213, prop=True, space="", optional=True),
+))  # fmt: skip
 EQUIPMENT = Type("EquipmentType", MACHINE_TOOL, 12)
 MESSAGES = Type("MessagesType", MACHINE_TOOL, 38)
 NOTIFICATION = Type("NotificationType", MACHINE_TOOL, 7)
@@ -86,7 +141,7 @@ MACHINES_NUMBER = 1001
 """The folder of all machines, in the namespace of Machinery."""
 TYPES = (
     GROUP, ITEM_IDENTIFICATION, MACHINE_IDENTIFICATION, IDENTIFICATION, ELEMENT, WORKING_UNIT, CHANNEL_MODIFIERS,
-    CHANNEL, SPINDLE, OPERATION, MONITORING, PRODUCTION_MACHINE, PRODUCTION_STATE, PROGRAM, ACTIVE_PROGRAM, STATISTICS,
-    PRODUCTION, EQUIPMENT, MESSAGES, NOTIFICATION, ALERT, MACHINE,
+    CHANNEL, SPINDLE, OPERATION, MONITORING, PRODUCTION_MACHINE, PRODUCTION_STATE, JOB_STATE, PROGRAM, ACTIVE_PROGRAM,
+    JOB, JOBS, STATISTICS, PRODUCTION, BASE_TOOL, TOOL, TOOLS, EQUIPMENT, MESSAGES, NOTIFICATION, ALERT, MACHINE,
 )  # fmt: skip
 """All of them, each after its base."""

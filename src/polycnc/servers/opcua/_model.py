@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from polycnc.servers.opcua._moment import At
+from polycnc.servers.plant import Seen
 
 CNC = "http://opcfoundation.org/UA/CNC"
 DI = "http://opcfoundation.org/UA/DI/"
@@ -44,6 +45,8 @@ OF_AXIS = "axis"
 """The unit or range of a member that has those of its axis; `axis X` names one."""
 UNLIMITED = (-1e6, 1e6)
 PERCENT = (0.0, 100.0)
+COMPONENT, ADD_IN, ORDERED = 47, 17604, 49
+"""How an object hangs on another one: HasComponent, HasAddIn, HasOrderedComponent."""
 Span = tuple[float, float] | str
 """The range of a value; the name of what has it (`Fixed.spans`), where it depends on the machine."""
 
@@ -101,8 +104,8 @@ class Enumeration:
 class Item:
     """An object of a machine: its path from the machine's own place, its type, and what it is about.
 
-    `about` is an axis or the object's name. `add_in`: it hangs by HasAddIn. `space` is the namespace of its name, None
-    that of the machines.
+    `about` is an axis, a tool or the object's name. `by` is the reference that it hangs by. `space` is the namespace of
+    its name, None that of the machines.
     """
 
     path: str
@@ -110,9 +113,18 @@ class Item:
     channel: int = 0
     about: str = ""
     space: str | None = None
-    add_in: bool = False
+    by: int = COMPONENT
 
     @property
     def name(self) -> str:
         """The last part of its path."""
         return self.path.rpartition("/")[2]
+
+
+@dataclass(frozen=True, slots=True)
+class Listing:
+    """A list whose objects come and go: its path, the names of its objects now, and what each consists of."""
+
+    path: str
+    names: Callable[[Seen], tuple[str, ...]]
+    items: Callable[[str], tuple[Item, ...]]

@@ -19,6 +19,8 @@ MACHINE_MODES = ("Manual", "Automatic", "Setup", "AutoWithManualIntervention", "
 CHANNEL_MODES = (
     "Automatic", "MdaMdi", "JogManual", "JogIncrement", "TeachingHandle", "Remote", "Reference", "Other",
 )  # fmt: skip
+TOOL_MANAGEMENT = ("NumberBased", "GroupBased", "Other")
+TOOL_LOCKED = ("CapabilityUnavailable", "ByOperator", "ToolBreak", "ToolLife", "MeasurementError", "Other")
 PRODUCTION_STATES = ("Initializing", "Running", "Ended", "Interrupted", "Aborted")
 
 _OPERATION = {Mode.AUTO: "Automatic", Mode.EDIT: "Automatic", Mode.MDI: "MDA"}
@@ -61,7 +63,7 @@ class Fixed:
     channels: tuple[tuple[str, ...], ...]
     dry_run_mm_min: float
     nodes: Mapping[str, object] = field(default_factory=dict)
-    """Nodes that values name: `channel 0` and so on, and the states of the active program."""
+    """Nodes that values name: `channel 0` and so on, `job`, `none`, and states as `program Running`, `job Running`."""
 
     @classmethod
     def of(cls, name: str, control: Control, nodes: Mapping[str, object]) -> Fixed:
@@ -103,6 +105,8 @@ class At:
     fixed: Fixed
     number: int = 0
     name: str = ""
+    versions: Mapping[str, int] = field(default_factory=dict)
+    """How often each list has changed that objects come to and go from, by its path."""
 
     def read(self, fact: str) -> Any:
         """Return the value of a fact; None of an axis that the machine does not have."""

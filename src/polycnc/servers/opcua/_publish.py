@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from datetime import UTC
 from typing import Any
 
@@ -13,6 +14,7 @@ from polycnc.cnc import Control, Status
 from polycnc.servers.machines import ServedMachine
 from polycnc.servers.opcua._alarms import AlarmEvents
 from polycnc.servers.opcua._cnc import POSITION
+from polycnc.servers.opcua._lists import Lists
 from polycnc.servers.opcua._model import Member
 from polycnc.servers.opcua._moment import At, Fixed
 from polycnc.servers.opcua._space import NOT_SUPPORTED, Bound, Position, data_of
@@ -20,6 +22,15 @@ from polycnc.servers.plant import Seen, see
 
 _NONE = object()
 _VALUE = ua.AttributeIds.Value
+
+
+@dataclass(slots=True)
+class _Shown:
+    """A member, how its values are sent, and the one that its node has."""
+
+    bound: Bound
+    variant: ua.VariantType
+    value: Any = _NONE
 
 
 class Publisher:
@@ -32,15 +43,18 @@ class Publisher:
         bound: Sequence[Bound],
         space: AddressSpace,
         index: dict[str, int],
+        lists: Lists,
         alarms: AlarmEvents,
     ) -> None:
         self.machine = machine
         self.fixed = fixed
-        self._bound = [(each, data_of(each.member, index)[0]) for each in bound]
+        self._index = index
+        self._shown: dict[ua.NodeId, _Shown] = {}
+        self._show(bound)
+        self._lists = lists
         self._space = space
         self._alarms = alarms
         self._last: Status | None = None
-        self._values: list[Any] = [_NONE] * len(self._bound)
         self._see = see(self._control)
 
     async def refresh(self) -> None:
@@ -57,7 +71,7 @@ class Publisher:
 
     def at(self, number: int, name: str) -> At:
         """Return the present cycle, for a channel or axis."""
-        return At(self._see(), self.fixed, number, name)
+        return At(self._see(), self.fixed, number, name, self._lists.versions)
 
     def _control(self) -> Control:
         control = self.machine.control
@@ -73,17 +87,25 @@ class Publisher:
             return
         self._last = status
         time = status.now.replace(tzinfo=UTC)
+        gone, come = await self._lists.follow(seen)
+        for node in gone:
+            self._shown.pop(node, None)
+        self._show(come)
         moments: dict[tuple[int, str], At] = {}
-        for number, (each, variant) in enumerate(self._bound):
-            item = each.item
+        for shown in list(self._shown.values()):
+            each, item = shown.bound, shown.bound.item
             key = item.channel, item.about
             if (at := moments.get(key)) is None:
-                at = moments[key] = At(seen, self.fixed, *key)
+                at = moments[key] = At(seen, self.fixed, *key, self._lists.versions)
             value = None if each.member.read is None else each.member.read(at)
-            if value != self._values[number]:
-                self._values[number] = value
-                await self._write(each, variant, value, time)
+            if value != shown.value and each.node in self._space:
+                shown.value = value
+                await self._write(each, shown.variant, value, time)
+        await self._lists.tell(time)
         await self._alarms.follow(status, seen.inventory.alarms, revision)
+
+    def _show(self, bound: Sequence[Bound]) -> None:
+        self._shown |= {each.node: _Shown(each, data_of(each.member, self._index)[0]) for each in bound}
 
     async def _write(self, bound: Bound, variant: ua.VariantType, value: Any, time: Any) -> None:
         await self._space.write_attribute_value(

@@ -14,6 +14,7 @@ from polycnc.servers.opcua import _machine_tool as tool
 from polycnc.servers.opcua._cnc import POSITION, POSITION_NUMBERS
 from polycnc.servers.opcua._model import (
     CNC,
+    COMPONENT,
     MACHINERY,
     SPACES,
     Enumeration,
@@ -27,11 +28,13 @@ from polycnc.servers.opcua._tree import span_of, unit_of
 
 _UNIT_SPACE = "http://www.opcfoundation.org/UA/units/un/cefact"
 _VARIABLE, _PROPERTY, _DATA_ITEM, _ANALOG, _ANALOG_UNIT, _STATE = 63, 68, 2365, 2368, 17570, 2760
-_COMPONENT, _HAS_PROPERTY, _SUBTYPE, _ADD_IN, _RULE, _ENCODING, _ORGANIZES = 47, 46, 45, 17604, 37, 38, 35
+_HAS_PROPERTY, _SUBTYPE, _RULE, _ENCODING, _ORGANIZES = 46, 45, 37, 38, 35
 _MANDATORY, _OPTIONAL = 78, 80
+_STATES = {False: 2307, True: 2309}  # the types of a state, and of an initial one
 _PARTS = ("ActPos", "CmdPos", "RemDist")
 READ = ua.AccessLevel.CurrentRead.mask
 READ_WRITE = READ | ua.AccessLevel.CurrentWrite.mask
+_GONE = ua.StatusCode(ua.StatusCodes.BadNodeIdUnknown)
 NOT_SUPPORTED = ua.StatusCode(ua.StatusCodes.BadNotSupported)
 
 
@@ -94,19 +97,14 @@ class Space:
             ua.NodeId(tool.MACHINES_NUMBER, machinery), ua.NodeId(85), "Machines", machinery, ua.NodeId(61),
             reference=_ORGANIZES,
         )  # fmt: skip
-        space = self.index[tool.PRODUCTION_MACHINE.space]
-        for name, number in tool.STATE_NODES.items():
-            initial = 2309 if name == "Initializing" else 2307
-            self.add_object(
-                ua.NodeId(number, space),
-                self.node_of(tool.PRODUCTION_MACHINE),
-                name,
-                space,
-                ua.NodeId(initial),
-            )
-            number_node = ua.NodeId(f"{name}.StateNumber", space)
-            value = ua.Variant(PRODUCTION_STATES.index(name), ua.VariantType.UInt32)
-            self._property(number_node, ua.NodeId(number, space), "StateNumber", 0, value, ua.NodeId(7))
+        for of, numbers in tool.STATE_NODES.items():
+            space = self.index[of.space]
+            for value, (number, name) in enumerate(zip(numbers, PRODUCTION_STATES, strict=True)):
+                node, initial = ua.NodeId(number, space), ua.NodeId(_STATES[name == "Initializing"])
+                self.add_object(node, self.node_of(of), name, space, initial)
+                number_node = ua.NodeId(f"{of.name}.{name}.StateNumber", space)
+                variant = ua.Variant(value, ua.VariantType.UInt32)
+                self._property(number_node, node, "StateNumber", 0, variant, ua.NodeId(7))
 
     def _add_enumeration(self, row: Enumeration) -> None:
         space = self.index[row.space]
@@ -175,18 +173,40 @@ class Space:
     ) -> list[Bound]:
         """Add the objects of a machine; `place` begins their node ids. Return their members."""
         bound: list[Bound] = []
-        nodes = {}
         for item in items:
             path = item.path
-            node = nodes[path] = ua.NodeId(f"{place}/{path}".rstrip("/"), self.own)
-            under = nodes[path.rpartition("/")[0]] if path else parent
+            node = self.at(place, path)
+            under = self.at(place, path.rpartition("/")[0]) if path else parent
             self.add_object(
                 node, under, item.name or name, self.own if item.space is None else self.index[item.space],
                 self.node_of(item.type),
-                reference=_ADD_IN if item.add_in else _COMPONENT if path else _ORGANIZES,
+                reference=item.by if path else _ORGANIZES,
             )  # fmt: skip
             bound += [self._bind(node, item, member, fixed) for member in item.type.all_members]
         return bound
+
+    def at(self, place: str, path: str) -> ua.NodeId:
+        """Return the node of an object of a machine."""
+        return ua.NodeId(f"{place}/{path}".rstrip("/"), self.own)
+
+    async def remove(self, node: ua.NodeId) -> None:
+        """Remove an object with what hangs on it; whoever monitors something of it is told that it is gone."""
+        inside = f"{node.Identifier}/"
+        (owner,) = (each.NodeId for each in self._space[node].references if not each.IsForward)
+        of_owner = self._space[owner].references
+        of_owner[:] = [each for each in of_owner if each.NodeId != node]
+        gone = [each for each in self._space.keys() if str(each.Identifier).startswith(inside)]  # noqa: SIM118
+        for each in gone:
+            value = self._space[each].attributes.get(ua.AttributeIds.Value)
+            if value is not None and value.datachange_callbacks:
+                await self._space.write_attribute_value(
+                    each, ua.AttributeIds.Value, ua.DataValue(ua.Variant(None), _GONE)
+                )
+                for handle in list(value.datachange_callbacks):
+                    self._space.delete_datachange_callback(handle)
+        items = [ua.DeleteNodesItem(NodeId=each, DeleteTargetReferences=False) for each in (*gone, node)]
+        for code in self._nodes.delete_nodes(ua.DeleteNodesParameters(NodesToDelete=items)):
+            code.check()
 
     def _bind(self, owner: ua.NodeId, item: Item, member: Member, fixed: Fixed) -> Bound:
         node = ua.NodeId(f"{owner.Identifier}/{member.name}", self.own)
@@ -210,7 +230,7 @@ class Space:
         space: int,
         of: ua.NodeId,
         *,
-        reference: int = _COMPONENT,
+        reference: int = COMPONENT,
     ) -> None:
         """Add an object."""
         attributes = ua.ObjectAttributes(DisplayName=ua.LocalizedText(name))
@@ -288,7 +308,7 @@ class Space:
         *,
         rank: int = -1,
         level: int = READ,
-        reference: int = _COMPONENT,
+        reference: int = COMPONENT,
         rule: int = 0,
     ) -> None:
         attributes = ua.VariableAttributes(

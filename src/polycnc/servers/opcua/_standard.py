@@ -7,11 +7,15 @@ from collections.abc import Awaitable, Callable
 from typing import Any
 
 from asyncua import ua
+from asyncua.crypto.permission_rules import User, UserRole
 from asyncua.server.history import HistoryManager
 from asyncua.server.internal_server import InternalServer
+from asyncua.server.internal_session import InternalSession
 from asyncua.server.standard_address_space import standard_address_space
 
 from polycnc.servers.machines import AS_USUAL, Treatment
+
+_ANYBODY = User(role=UserRole.Anonymous)
 
 
 class _GivenUpError(Exception):
@@ -35,10 +39,40 @@ async def _as_usual() -> Treatment:
     return AS_USUAL
 
 
+async def _nothing() -> None:
+    return
+
+
+class _Session(InternalSession):
+    """The session of a client, which sees the objects that there are now."""
+
+    iserver: BoundedServer
+
+    async def browse(self, params: ua.BrowseParameters) -> list[ua.BrowseResult]:
+        await self.iserver.before()
+        found: list[ua.BrowseResult] = await super().browse(params)
+        return found
+
+    async def translate_browsepaths_to_nodeids(
+        self, params: list[ua.BrowsePath]
+    ) -> list[ua.BrowsePathResult]:
+        await self.iserver.before()
+        found: list[ua.BrowsePathResult] = await super().translate_browsepaths_to_nodeids(params)
+        return found
+
+
 class BoundedServer(InternalServer):
-    """What a server holds, with bounds for what clients may ask for; `treat` says what happens to a request."""
+    """What a server holds, with bounds for what clients may ask for.
+
+    `treat` says what happens to a request, `before` is done before one that asks which objects there are.
+    """
 
     treat: Callable[[], Awaitable[Treatment]] = staticmethod(_as_usual)
+    before: Callable[[], Awaitable[None]] = staticmethod(_nothing)
+
+    def create_session(self, name: str, user: User = _ANYBODY, external: bool = False) -> InternalSession:
+        """Return a session for a client."""
+        return _Session(self, self.aspace, self.subscription_service, name, user=user, external=external)
 
     async def load_standard_address_space(self, shelf_file: Any = None) -> None:
         """Fill the address space in a thread; a cancelled one ends within milliseconds, not seconds."""

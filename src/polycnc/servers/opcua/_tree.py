@@ -6,10 +6,27 @@ from collections.abc import Iterator
 
 from polycnc.servers.opcua import _cnc as cnc
 from polycnc.servers.opcua import _machine_tool as tool
-from polycnc.servers.opcua._model import CNC, DI, MACHINE_TOOL, OF_AXIS, UNITS, UNLIMITED, Item, Member, Unit
+from polycnc.servers.opcua._model import (
+    ADD_IN,
+    CNC,
+    DI,
+    MACHINE_TOOL,
+    OF_AXIS,
+    ORDERED,
+    UNITS,
+    UNLIMITED,
+    Item,
+    Listing,
+    Member,
+    Unit,
+)
 from polycnc.servers.opcua._moment import Fixed
+from polycnc.servers.plant import Seen
 
 MESSAGES = "Notification/Messages"
+PLAN, TOOLS = "Production/ProductionPlan", "Equipment/Tools"
+JOB = f"{PLAN}/Job1"
+MOST_TOOLS = 500
 
 
 def channel_path(number: int) -> str:
@@ -35,7 +52,7 @@ def machine_tool_items(fixed: Fixed) -> Iterator[Item]:
     """Give the objects of the view of OPC 40501-1, each after what it hangs on."""
     own = MACHINE_TOOL
     yield Item("", tool.MACHINE)
-    yield Item("Identification", tool.IDENTIFICATION, space=DI, add_in=True)
+    yield Item("Identification", tool.IDENTIFICATION, space=DI, by=ADD_IN)
     yield Item("Monitoring", tool.MONITORING, space=own)
     yield Item("Monitoring/MachineTool", tool.OPERATION, space=own)
     for number in range(len(fixed.channels)):
@@ -47,9 +64,33 @@ def machine_tool_items(fixed: Fixed) -> Iterator[Item]:
     yield Item("Production/ActiveProgram", tool.ACTIVE_PROGRAM, space=own)
     yield Item("Production/ActiveProgram/State", tool.PRODUCTION_STATE, space=own)
     yield Item("Production/Statistics", tool.STATISTICS, space=own)
+    yield Item(PLAN, tool.JOBS, 0, PLAN, space=own)
     yield Item("Equipment", tool.EQUIPMENT, space=own)
+    yield Item(TOOLS, tool.TOOLS, 0, TOOLS, space=own)
     yield Item("Notification", tool.NOTIFICATION, space=own)
     yield Item(MESSAGES, tool.MESSAGES, space=own)
+
+
+def _job_items(name: str) -> tuple[Item, ...]:
+    """Return the objects of a job: the selected program, which runs for each part of the lot."""
+    programs = f"{PLAN}/{name}/ProductionPrograms"
+    return (
+        Item(f"{PLAN}/{name}", tool.JOB, by=ORDERED),
+        Item(f"{PLAN}/{name}/State", tool.JOB_STATE, space=MACHINE_TOOL),
+        Item(programs, tool.PROGRAMS, space=MACHINE_TOOL),
+        Item(f"{programs}/Program1", tool.PROGRAM, by=ORDERED),
+    )
+
+
+def _tool_names(seen: Seen) -> tuple[str, ...]:
+    return tuple(map(str, sorted(seen.inventory.tools)[:MOST_TOOLS]))
+
+
+LISTINGS = (
+    Listing(PLAN, lambda seen: ("Job1",) if seen.status.channels[0].program else (), _job_items),
+    Listing(TOOLS, _tool_names, lambda name: (Item(f"{TOOLS}/Tool{name}", tool.TOOL, 0, name),)),
+)
+"""The lists of a machine that objects come to and go from."""
 
 
 def unit_of(member: Member, item: Item, fixed: Fixed) -> Unit | None:

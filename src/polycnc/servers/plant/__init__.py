@@ -1,7 +1,7 @@
 """What a plant wants to know of a machine: one table of facts, read from its status, for every door."""
 
 from polycnc.servers.plant._conditions import About, Trouble, troubles
-from polycnc.servers.plant._facts import FACTS, Execution, Fact, Scope, Seen, Unit, Value, see
+from polycnc.servers.plant._facts import FACTS, Execution, Fact, Scope, Seen, Unit, Value, asset_id, see
 from polycnc.servers.plant._places import Place, Shape, places, shape_of
 
 __all__ = [
@@ -16,6 +16,7 @@ __all__ = [
     "Trouble",
     "Unit",
     "Value",
+    "asset_id",
     "places",
     "see",
     "shape_of",

@@ -108,6 +108,11 @@ class _Lookups:
         return Seen(status, inventory, self._comments, self._homes)
 
 
+def asset_id(machine: str, tool: int) -> str:
+    """Return what a tool of a machine is called among all tools of a plant."""
+    return f"{machine}.T{tool}"
+
+
 def see(control: Callable[[], Control]) -> Callable[[], Seen]:
     """Return what reads a control at its present cycle."""
     lookups = _Lookups()
@@ -137,6 +142,12 @@ def _program_state(channel: ChannelStatus) -> str:
 
 def _production(channel: ChannelStatus) -> str:
     return "running" if channel.active else _PRODUCTION.get(channel.run_state, "interrupted")
+
+
+def _job(seen: Seen, channel: ChannelStatus) -> str:
+    """Return the state of the lot: between two of its parts it is interrupted."""
+    state, parts = _production(channel), seen.status.parts
+    return "interrupted" if state == "ended" and parts.made < parts.required else state
 
 
 def _spindle_state(seen: Seen) -> str:
@@ -212,6 +223,7 @@ _ROWS = (
     Fact("program_state", _C, "stopped, running, waiting for more of the program, interrupted or canceled",
         lambda seen, it: _program_state(it)),
     Fact("production", _C, "initializing, running, ended, interrupted or aborted", lambda seen, it: _production(it)),
+    Fact("job", _C, "the same of the lot, which is interrupted between two of its parts", _job),
     Fact("hold", _C, "feed hold", lambda seen, it: int(it.run_state is RunState.HOLD)),
     Fact("feed", _C, "the speed along the path", lambda seen, it: it.feed.actual, Unit.MM_MIN),
     Fact("commanded_feed", _C, "the speed that it shall have, with overrides",

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
-from polycnc.errors import UsageError
+from polycnc.errors import UsageError, did_you_mean
 from polycnc.machine import Device
 from polycnc.servers.focas import Faults, load_faults, load_profile
 from polycnc.servers.machines import LOOPBACK, DoorKind, Log, Scenario, ServedMachine, Wanted
@@ -81,13 +81,18 @@ def doors_of(text: str, table: Mapping[str, DoorKind], kind: str) -> list[tuple[
             ]
             continue
         if name not in table:
-            raise UsageError(f"there is no door '{name[:40]}'", hint=f"Doors are {', '.join(table)}, all.")
+            raise UsageError(
+                f"there is no door '{name[:40]}'",
+                hint=f"{did_you_mean(name, table)}Doors are {', '.join(table)}, all.",
+            )
         made.append((table[name], _at(name, at)))
     names = [row.name for row, _ in made]
     if twice := [name for name in names if names.count(name) > 1]:
         raise UsageError(f"the door {twice[0]} is named twice", hint="Name each once.")
     if not made:
-        raise UsageError("no door is named", hint=f"Doors are {', '.join(table)}, all.")
+        raise UsageError(
+            "no door is named", hint=f"{did_you_mean(name, table)}Doors are {', '.join(table)}, all."
+        )
     return made
 
 

@@ -59,7 +59,7 @@ class ShdrServer:
             ) from None
         self._port = self._server.sockets[0].getsockname()[1]
         self._adapter.look(self._see())
-        self._machine.served.watch(self._look)
+        self._machine.served.watch(self._look, lambda: bool(self._agents))
         self._turns = asyncio.get_running_loop().create_task(self._turn())
 
     async def close(self) -> None:

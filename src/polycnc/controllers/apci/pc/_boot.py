@@ -52,6 +52,11 @@ class Application:
         """Return the selected board's slot, None if there is no board."""
         return self.pc.slots[self._selected] if self._selected < len(self.pc.slots) else None
 
+    @property
+    def selected(self) -> int:
+        """The number of the selected board, from 0."""
+        return self._selected
+
     def status(self, since: str = "") -> Status:
         """Return what a function with the usual status returns; `since` is the revision that brought it.
 

@@ -3,8 +3,11 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Mapping
-from itertools import pairwise
+from collections.abc import Callable, Mapping
+from typing import TypeAlias
+
+import numpy as np
+import numpy.typing as npt
 
 from polycnc.controllers.bosch.screen._surface import HEIGHT, SOFTKEY_ROWS, WIDTH, Surface
 from polycnc.nc.cpl import OMITTED, Fault
@@ -14,6 +17,7 @@ _PATTERNS = {0: "#", 3: "########..#..", 4: "######...."}
 _ERASE, _TOGGLE = 1, 2
 _LINE_TYPES = 5
 _LARGEST = 100_000
+Places: TypeAlias = npt.NDArray[np.int64]
 
 
 class Drawing:
@@ -99,14 +103,9 @@ class Drawing:
             raise Fault("INVALID PARAMETER", "fill patterns are 0 to 5")
         left, right, bottom, top = self.window
         begin = self._pixel(number(x), number(y))
-        todo, pixels = [begin], self._surface.pixels
-        while todo:
-            at_x, at_y = todo.pop()
-            if not (left <= at_x <= right and bottom <= at_y <= top):
-                continue
-            if pixels[at_y + SOFTKEY_ROWS, at_x] not in (edge, code):
-                pixels[at_y + SOFTKEY_ROWS, at_x] = code
-                todo += ((at_x + 1, at_y), (at_x - 1, at_y), (at_x, at_y + 1), (at_x, at_y - 1))
+        pixels = self._surface.pixels[bottom + SOFTKEY_ROWS : top + SOFTKEY_ROWS + 1, left : right + 1]
+        reached = _reached((pixels != edge) & (pixels != code), begin[1] - bottom, begin[0] - left)
+        pixels[reached] = code
         return 0
 
     def _clr(self) -> int:
@@ -124,25 +123,53 @@ class Drawing:
 
     def _line(self, corners: list[tuple[int, int]]) -> None:
         left, right, bottom, top = self.window
-        pattern = _PATTERNS.get(self.line_type, "#")
-        for index, (x, y) in enumerate(_pixels(corners)):
-            if pattern[index % len(pattern)] == "#" and left <= x <= right and bottom <= y <= top:
-                place = (y + SOFTKEY_ROWS, x)
-                drawn = self._surface.pixels[place] >= 0
-                erased = self.line_type == _ERASE or (self.line_type == _TOGGLE and drawn)
-                self._surface.pixels[place] = -1 if erased else self.colour
+        pattern = np.array([each == "#" for each in _PATTERNS.get(self.line_type, "#")])
+        x, y = _pixels(corners)
+        seen = np.resize(pattern, len(x)) & (left <= x) & (x <= right) & (bottom <= y) & (y <= top)
+        pixels = self._surface.pixels.reshape(-1)
+        places = (y[seen] + SOFTKEY_ROWS) * WIDTH + x[seen]
+        if self.line_type != _TOGGLE:
+            pixels[places] = -1 if self.line_type == _ERASE else self.colour
+            return
+        places, times = np.unique(places, return_counts=True)  # where it crosses itself it toggles again
+        drawn = (pixels[places] >= 0) ^ (times % 2 == 1)
+        pixels[places] = np.where(drawn, self.colour, -1)
 
 
-def _pixels(corners: list[tuple[int, int]]) -> Iterator[tuple[int, int]]:
+def _pixels(corners: list[tuple[int, int]]) -> tuple[Places, Places]:
     """Return the pixels along a line through corners, each once."""
-    last: tuple[int, int] | None = None
-    for (x0, y0), (x1, y1) in pairwise(corners):
-        steps = max(abs(x1 - x0), abs(y1 - y0), 1)
-        for step in range(steps + 1):
-            pixel = (x0 + round((x1 - x0) * step / steps), y0 + round((y1 - y0) * step / steps))
-            if pixel != last:
-                yield pixel
-            last = pixel
+    at = np.array(corners, np.int64)
+    ways = np.diff(at, axis=0)
+    steps = np.maximum(np.abs(ways).max(axis=1), 1)
+    step = np.arange(int((steps + 1).sum())) - np.repeat(np.cumsum(steps + 1) - steps - 1, steps + 1)
+    ways, begins, steps = (np.repeat(each, steps + 1, axis=0) for each in (ways, at[:-1], steps))
+    found = begins + np.rint(ways * step[:, None] / steps[:, None]).astype(np.int64)
+    new = np.ones(len(found), bool)
+    new[1:] = (found[1:] != found[:-1]).any(axis=1)
+    return found[new, 0], found[new, 1]
+
+
+def _reached(free: npt.NDArray[np.bool_], row: int, column: int) -> npt.NDArray[np.bool_]:
+    """Return the free pixels that are joined to one by their edges, row by row in runs."""
+    reached = np.zeros_like(free)
+    todo = [(row, column)]
+    while todo:
+        row, column = todo.pop()
+        inside = 0 <= row < free.shape[0] and 0 <= column < free.shape[1]
+        if not inside or not free[row, column] or reached[row, column]:
+            continue
+        walls = np.flatnonzero(~free[row])
+        place = int(np.searchsorted(walls, column))
+        left = int(walls[place - 1]) + 1 if place else 0
+        right = int(walls[place]) if place < len(walls) else free.shape[1]
+        reached[row, left:right] = True
+        for beside in (row - 1, row + 1):
+            if 0 <= beside < free.shape[0]:
+                here = free[beside, left:right] & ~reached[beside, left:right]
+                todo += (
+                    (beside, left + int(each)) for each in np.flatnonzero(np.diff(here, prepend=False) & here)
+                )
+    return reached
 
 
 def number(value: object) -> float:

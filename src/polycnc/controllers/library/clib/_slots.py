@@ -109,13 +109,14 @@ class CLibrary:
         extents: By function and argument: how many bytes lie behind a pointer, in C.
         aliases: Other names of functions.
         left_out: By function, why it does nothing.
+        interrupts: The functions that install the program's routine for interrupts, and remove it.
         extensions: By function, a structure that begins with the record of its argument and goes on with what that has
             no place for; it is passed in the record's place.
         is_extended: Whether it is, in C, of the argument; else the function does nothing.
         packing: To how many bytes the program packs structures, 0: each as the manual has it.
         packings: The packings that programs of this library have besides.
         selected: Which member of a union holds.
-        failures: By function, what it answers where `null` or `lost` would mean success.
+        failures: By function, what it answers where `null` or `lost` would mean success, or where it is left out.
     """
 
     name: str
@@ -141,6 +142,7 @@ class CLibrary:
     extents: Mapping[tuple[str, str], str] = field(default_factory=dict)
     aliases: Mapping[str, str] = field(default_factory=dict)
     left_out: Mapping[str, str] = field(default_factory=dict)
+    interrupts: tuple[str, ...] = ()
     extensions: Mapping[str, Any] = field(default_factory=dict)
     is_extended: str = ""
     packing: int = 0
@@ -231,7 +233,7 @@ def _slot(library: CLibrary, function: Function, argument: Argument) -> Slot:
 
 
 def slot_of(library: CLibrary, argument: Argument) -> tuple[Way, Any]:
-    """Return how an argument travels, and what its elements are; a routine does not travel, its address is memory."""
+    """Return how an argument travels, and what its elements are; a number travels in a routine's place."""
     kind = argument.type
     star = argument.c.rstrip().endswith("*")
     match kind:
@@ -240,7 +242,7 @@ def slot_of(library: CLibrary, argument: Argument) -> tuple[Way, Any]:
         case Bytes():
             return Way.MEMORY, library.classes.get(argument.c.rstrip(" *"), ctypes.c_char)
         case Pointer(of=of) if of is callable:
-            return Way.MEMORY, ctypes.c_char
+            return Way.VALUE, ctypes.c_int32
         case Pointer(ctype=None, of=of):
             return (Way.NUMBERS, ctypes.c_int16) if of is int else (Way.RECORDS, _as_packed(library, of))
         case Pointer(ctype=ctype):

@@ -15,6 +15,7 @@ HELLO = 60
 """Bytes of what a library says first."""
 
 _VERSION_SIZE = 16
+_IN_PROCESS = "machines in the program's process call no routine of it"
 
 
 def write_source(library: CLibrary, version: str, python: str = "") -> str:
@@ -24,10 +25,18 @@ def write_source(library: CLibrary, version: str, python: str = "") -> str:
     """
     runtime = files(__package__).joinpath("runtime.c").read_text("utf-8")
     by_name = {each.function.name: each for each in library.calls}
-    bodies = [
-        _function(library, by_name[name]) if name in by_name else _left_out(library, function)
-        for name, function in sorted(library.functions.items())
-    ]
+    listens = bool(library.interrupts) and not python
+    interrupts = files(__package__).joinpath("interrupts.c").read_text("utf-8") if listens else ""
+    bodies = []
+    for name, function in sorted(library.functions.items()):
+        if name in library.interrupts:
+            bodies.append(
+                _of_routine(library, by_name[name]) if listens else _left_out(library, function, _IN_PROCESS)
+            )
+        elif name in by_name:
+            bodies.append(_function(library, by_name[name]))
+        else:
+            bodies.append(_left_out(library, function, library.left_out[name]))
     bodies += [
         _alias(library, alias, library.functions[name]) for alias, name in sorted(library.aliases.items())
     ]
@@ -36,6 +45,7 @@ def write_source(library: CLibrary, version: str, python: str = "") -> str:
             *_head(library, version, python),
             runtime,
             f'#include "{library.name}.h"\n',
+            interrupts,
             library.helpers,
             *bodies,
         )
@@ -53,6 +63,7 @@ def _head(library: CLibrary, version: str, python: str) -> Iterator[str]:
         ("PC_PACKING", f"{library.packing} /* 0: each structure as the manual has it */"),
         ("PC_HELLO_SIZE", HELLO),
         ("PC_HANDLES", int(bool(library.through))),
+        ("PC_INTERRUPTS", int(bool(library.interrupts) and not python)),
         ("PC_CODE_NOBODY", f"({library.nobody})"),
         ("PC_CODE_LOST", f"({library.lost})"),
         ("PC_CODE_NULL", f"({library.null})"),
@@ -145,10 +156,16 @@ def _without_pointers(slot: Slot, before: list[str]) -> str:
     return f"{{PC_READ, {name} ? {name}_ : 0, {slot.width}, 0, 0}}"
 
 
-def _left_out(library: CLibrary, function: Function) -> str:
+def _of_routine(library: CLibrary, call: Call) -> str:
+    """Return a function that installs the program's routine, or removes it."""
+    which = f"pc_set_routine({call.number}, {call.slots[0].argument.name})" if call.slots else ""
+    told = which or f"pc_reset_routine({call.number})"
+    return f"{prototype(library, call.function)}\n{{\n    return {told};\n}}\n"
+
+
+def _left_out(library: CLibrary, function: Function, reason: str) -> str:
     unused = "".join(f"    (void){each.name};\n" for each in function.arguments)
-    reason = library.left_out[function.name]
-    code = library.failed if function.coded else 0
+    code = library.failures.get(function.name, library.failed if function.coded else 0)
     answer = "" if function.result == "void" else f"    return {code};\n"
     return f"/* {reason} */\n{prototype(library, function)}\n{{\n{unused}{answer}}}\n"
 

@@ -76,6 +76,20 @@ static void pc_shut(pc_socket client);
 #endif
 #endif
 
+#if PC_INTERRUPTS
+static int pc_calls_begin(void);
+static void pc_calls_end(int counted);
+static void pc_listen_again(void);
+#ifndef _WIN32
+static void pc_calls_forget(void);
+#endif
+#else
+#define pc_calls_begin() 0
+#define pc_calls_end(counted) (void)(counted)
+#define pc_listen_again() (void)0
+#define pc_calls_forget() (void)0
+#endif
+
 enum { PC_VALUE, PC_READ, PC_WRITE, PC_BOTH };
 enum { PC_PLAIN, PC_THROUGH, PC_OPENS, PC_OPENS_AT, PC_FREES };
 enum { PC_FREE, PC_OPEN, PC_LOST };
@@ -149,10 +163,12 @@ static void pc_begin(void)
 #else
     if (pc_ready && pc_process == getpid())
         return;
-    if (pc_ready) /* a child: the connections are its parent's */
+    if (pc_ready) { /* a child: the connections are its parent's */
         for (k = 0; k < PC_CONNECTIONS; k++)
             if (pc_connections[k].state == PC_OPEN)
                 pc_shut(pc_connections[k].socket);
+        pc_calls_forget();
+    }
     memset(pc_connections, 0, sizeof pc_connections);
     for (k = 0; k < PC_CONNECTIONS; k++)
         pthread_mutex_init(&pc_connections[k].lock, NULL);
@@ -769,7 +785,12 @@ static pc_result pc_call(uint16_t number, int way, pc_argument *given, int count
     pc_begin();
     connection = pc_usual(way == PC_OPENS, &code);
     pc_leave(&pc_all);
-    if (connection >= 0)
+    if (connection >= 0) {
+        int counted = pc_calls_begin();
         code = pc_exchange(&pc_connections[connection], number, given, count, &result);
+        pc_calls_end(counted);
+        if (way == PC_OPENS && !code && !result.whole)
+            pc_listen_again();
+    }
     return code ? pc_coded(code) : result;
 }

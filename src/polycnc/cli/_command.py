@@ -1,0 +1,43 @@
+"""Commands that say in words what is wrong with an option, and not in those of the library that checks it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import typer
+from typer.core import TyperCommand
+
+_NUMBER = ("float_parsing", "int_parsing", "int_parsing_size", "int_from_float", "finite_number")
+_BOUNDS = ("greater_than", "greater_than_equal", "less_than", "less_than_equal")
+
+
+class Command(TyperCommand):
+    """A command whose refusals of options are sentences."""
+
+    def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
+        """Take the words of the command line.
+
+        Raises:
+            typer.BadParameter: One of them does not do.
+        """
+        try:
+            return super().parse_args(ctx, args)
+        except typer.BadParameter as error:
+            error.message = _in_words(error)
+            raise
+
+
+def _in_words(error: typer.BadParameter) -> str:
+    """Return what is wrong; pydantic's own text only where it is not known what it is about."""
+    found: Callable[[], list[dict[str, Any]]] | None = getattr(error.__cause__, "errors", None)
+    if found is None:
+        return error.message
+    first = found()[0]
+    given = f"'{str(first['input'])[:40]}'"
+    least, most = (getattr(error.param, name, None) for name in ("min", "max"))
+    if first["type"] in _BOUNDS:
+        return f"{given} is not between {least:g} and {most:g}."
+    if first["type"] in _NUMBER:
+        return f"{given} is no {'whole number' if 'int' in first['type'] else 'number'}."
+    return error.message.removeprefix("Value error, ")

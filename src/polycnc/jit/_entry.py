@@ -1,0 +1,159 @@
+"""Decorators for functions that numba compiles: internal ones, and the entries from Python, which are kept on disk.
+
+numba is loaded when the first function has to be compiled, or looked for among those that are kept.
+"""
+
+from __future__ import annotations
+
+import functools
+from collections.abc import Callable
+from typing import Any, ParamSpec, TypeVar, cast, overload
+
+from polycnc.jit._marks import DISABLED, OPEN_INTERNALS, Kept, Mark
+from polycnc.jit._plain import ALLOWANCE, PlainEntry
+
+P = ParamSpec("P")
+R = TypeVar("R")
+F = TypeVar("F", bound=Callable[..., Any])
+
+
+class Internal(Mark):
+    """A function for compiled callers: numba would crash if Python called what it makes of it."""
+
+    _twin: Entry | None = None
+
+    def __call__(self, *args: object, **kwargs: object) -> object:
+        """Call an entry of its own, where internals are open."""
+        if not OPEN_INTERNALS:
+            raise TypeError(
+                f"{self.__name__} is internal to compiled code: decorate it with `entry`, "
+                "or set POLYCNC_OPEN_INTERNALS=1 in tests"
+            )
+        if self._twin is None:  # so that the functions that users run are the same with and without tests
+            self._twin = Entry(self)
+        return self._twin(*args, **kwargs)
+
+
+class Entry(Kept):
+    """A function that Python may call: plain while there is little to do, then by way of numba."""
+
+    def __init__(
+        self,
+        inner: Mark,
+        steps: Callable[..., int] | None = None,
+        spared: Callable[..., int] | None = None,
+    ) -> None:
+        super().__init__(inner)
+        self.steps, self.spared = steps, spared
+        code = inner.py_func.__code__
+        self._names = code.co_varnames[: code.co_argcount]
+        self._defaults = inner.py_func.__defaults__ or ()
+        self._plain: PlainEntry | None = None
+
+    @property
+    def stats(self) -> Any:
+        """How often numba found the function kept, and how often not."""
+        return self.compiled().stats
+
+    @property
+    def signatures(self) -> list[object]:
+        """The types of arguments for which the function is loaded."""
+        return [] if self.dispatcher is None else list(self.dispatcher.signatures)
+
+    def __call__(self, *args: Any, **kwargs: Any) -> Any:
+        """Do the work."""
+        if self.dispatcher is None:
+            values = self._values(args, kwargs)
+            if values is not None and ALLOWANCE.take_unasked(lambda: self.wanted(values)):
+                return self.plainly(values)
+            self.compiled()
+        return self.dispatcher(*args, **kwargs)
+
+    def compiled(self) -> Any:
+        """Return what numba makes of the function, which loads numba."""
+        if self.dispatcher is None:
+            from polycnc.jit._compile import make_entry
+
+            ALLOWANCE.ask()
+            make_entry(self)
+        return self.dispatcher
+
+    def wanted(self, values: tuple[Any, ...]) -> int:
+        """Return how many steps a call may take."""
+        return 1 if self.steps is None else self.steps(*values)
+
+    def plainly(self, values: tuple[Any, ...]) -> object:
+        """Do the work as it is written; its steps are counted already."""
+        if self._plain is None:
+            self._plain = PlainEntry(self)
+        result = self._plain(*values)
+        if self.spared is not None:
+            ALLOWANCE.give_back(self.spared(result, *values))
+        return result
+
+    def _values(self, args: tuple[Any, ...], kwargs: dict[str, Any]) -> tuple[Any, ...] | None:
+        """Return the arguments with the defaults in their places; None where they do not fit."""
+        missing = len(self._names) - len(args)
+        if missing == 0 and not kwargs:
+            return args
+        given = dict(zip(self._names[len(self._names) - len(self._defaults) :], self._defaults, strict=True))
+        given.update(kwargs)
+        try:
+            return (*args, *(given[name] for name in self._names[len(args) :]))
+        except KeyError:
+            return None  # numba says what is wrong
+
+
+_entries: dict[str, Kept] = {}  # by "module.name"
+
+
+def entries() -> list[tuple[str, Kept]]:
+    """Return "module.name" and mark of what is kept, of all modules imported so far."""
+    return sorted(_entries.items())
+
+
+def versions() -> list[str]:
+    """Return, sorted, name and content of the entries of all modules imported so far."""
+    from polycnc.jit._cache import version
+
+    return sorted(version(each) for each in _entries.values())
+
+
+def register(mark: Kept) -> None:
+    """Have a kept function among those that are compiled beforehand."""
+    _entries[f"{mark.py_func.__module__}.{mark.py_func.__qualname__}"] = mark
+
+
+def compiled(function: Callable[P, R]) -> Callable[P, R]:
+    """Compile `function` for compiled callers; IEEE arithmetic, so it equals its uncompiled self exactly.
+
+    Python cannot call it: the wrapper for that costs more compile time than most functions do (see `entry`).
+    It cannot allocate arrays: without numba's reference counts a control cycle takes a tenth of the time (see
+    `allocating`).
+    """
+    return function if DISABLED else cast("Callable[P, R]", Internal(function, counted=False))
+
+
+def allocating(function: Callable[P, R]) -> Callable[P, R]:
+    """Compile `function` for compiled callers, as `compiled` does, but allowed to allocate arrays."""
+    return function if DISABLED else cast("Callable[P, R]", Internal(function, counted=True))
+
+
+@overload
+def entry(function: Callable[P, R]) -> Callable[P, R]: ...
+@overload
+def entry(*, steps: Callable[..., int], spared: Callable[..., int] | None = None) -> Callable[[F], F]: ...
+def entry(function: Any = None, *, steps: Any = None, spared: Any = None) -> Any:
+    """Compile `function` for Python and compiled callers, and keep the result on disk.
+
+    `steps` tells from the arguments of a call how many steps it may take, of some 20 µs uncompiled each; without it
+    every call is one. `spared` tells from the result and the arguments how many of them it did not take. Few steps are
+    not worth compiling (see `_plain`).
+    """
+    if function is None:
+        return functools.partial(entry, steps=steps, spared=spared)
+    if DISABLED:
+        return function
+    made = Entry(Internal(function, counted=True), steps, spared)
+    register(made)
+    return made

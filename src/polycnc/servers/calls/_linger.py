@@ -1,0 +1,54 @@
+"""A moment's wait for the next call of a client that has just been answered, without a turn of the event loop."""
+
+from __future__ import annotations
+
+import asyncio
+import os
+import select
+import socket
+from collections.abc import Iterator
+
+_MOST_CALLS = 16  # then the event loop has its turn, whoever calls
+_WAIT_MS = 1
+
+
+class Linger:
+    """What a connection receives while nothing else is to be done, in its `buffer`.
+
+    A turn of the event loop takes longer than a frame that comes over the loopback. Whatever else the loop has to look
+    at ends the wait at once; its timers come late by a millisecond at most. Where the system cannot wait for an event
+    loop, nothing is ever received here.
+    """
+
+    def __init__(self, transport: asyncio.Transport, buffer: memoryview) -> None:
+        self._transport, self._buffer = transport, buffer
+        selector = getattr(asyncio.get_running_loop(), "_selector", None)
+        self._line: socket.socket | None = None
+        if hasattr(select, "epoll") and selector is not None:
+            self._line = socket.socket(fileno=os.dup(transport.get_extra_info("socket").fileno()))
+            self._poll = select.poll()
+            self._poll.register(self._line, select.POLLIN)
+            self._poll.register(selector.fileno(), select.POLLIN)
+
+    def received(self) -> Iterator[int]:
+        """Go through how many bytes have come, each time as long as the connection is read at all."""
+        line = self._line
+        if line is None:
+            return
+        here = (line.fileno(), select.POLLIN)
+        for _ in range(_MOST_CALLS):
+            if not self._transport.is_reading() or here not in self._poll.poll(_WAIT_MS):
+                return
+            try:
+                count = line.recv_into(self._buffer)
+            except OSError:  # the event loop hears of it too
+                return
+            if not count:
+                return
+            yield count
+
+    def close(self) -> None:
+        """Wait no more."""
+        if self._line is not None:
+            self._line.close()
+            self._line = None
