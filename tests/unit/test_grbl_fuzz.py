@@ -9,7 +9,6 @@ import pytest
 
 from polycnc.cnc import Control
 from polycnc.servers.grbl import GrblCore, grbl_control
-from support.often import share
 
 PARTS = (
     b"G0", b"G1", b"G2", b"G90", b"G91", b"G38.2", b"G10L2P1", b"G43.1", b"X1.5", b"Y-2", b"Z", b"F600", b"F0", b"S-1",
@@ -110,7 +109,7 @@ def attack(count: int, seed: int) -> None:
 
 
 def test_wrong_lines_are_answered_once_each() -> None:
-    attack(share(10_000), 20261124)
+    attack(10_000, 20261124)
 
 
 @pytest.mark.long
