@@ -134,7 +134,7 @@ def written(folder: Path, seed: int) -> Path:
     return folder / "main.nc"
 
 
-@pytest.mark.parametrize("seeds", [range(14), pytest.param(range(14, 500), marks=pytest.mark.long)])
+@pytest.mark.parametrize("seeds", [range(7), pytest.param(range(7, 500), marks=pytest.mark.long)])
 def test_a_macro_program_goes_on_from_any_cycle(tmp_path: Path, seeds: range) -> None:
     within = stops = 0
     for seed in seeds:
@@ -164,9 +164,9 @@ def test_a_macro_program_goes_on_from_any_cycle(tmp_path: Path, seeds: range) ->
 @pytest.mark.parametrize(
     "seeds",
     [
-        range(14),
+        range(7),
         range(129, 130),  # a program that was called twice was two texts, until a snapshot made them one
-        pytest.param(range(14, 500), marks=pytest.mark.long),
+        pytest.param(range(7, 500), marks=pytest.mark.long),
     ],
 )
 def test_a_cpl_program_goes_on_from_any_cycle(seeds: range) -> None:
@@ -311,7 +311,7 @@ def mutated(plain: Any, chance: random.Random) -> Any:
     )
 
 
-@pytest.mark.parametrize("count", [150, pytest.param(20_000, marks=pytest.mark.long)])
+@pytest.mark.parametrize("count", [80, pytest.param(20_000, marks=pytest.mark.long)])
 def test_data_that_is_no_snapshot_is_refused_whole(tmp_path: Path, count: int) -> None:
     _, kept = in_the_middle(tmp_path)
     whole = RunSnapshot.from_bytes(kept[0])

@@ -111,8 +111,8 @@ def test_commands_of_many_threads_are_all_done_in_order_and_no_reader_sees_half_
             last = host.status
             while last.log < THREADS * each:
                 # Not as often as it can: that would leave the commands to starve.
-                for look in (partial(host.wait, partial(logged_more, last.log)), lambda: host.status):
-                    seen = look()
+                news = host.wait(partial(logged_more, last.log))
+                for seen in (news, host.status):
                     if seen.doubled != 2 * seen.cycle or seen.balance != 0:
                         torn.append(seen)
                     if seen.cycle < last.cycle or seen.log < last.log:
