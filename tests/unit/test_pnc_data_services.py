@@ -232,6 +232,14 @@ def test_a_shift_of_a_block_to_come_is_not_shown_yet(tmp_path: Path) -> None:
     assert {(1, 0.0), (3, -6.0)} <= seen <= {(1, 0.0), (2, -6.0), (3, -6.0), (4, -6.0)}
 
 
+def test_a_shift_that_another_takes_back_is_shown(tmp_path: Path) -> None:
+    living = six(tmp_path)
+    living.start("N1 G1 X10 F60000\nN2 G92 X4\nN3 G168 X-6\nN4 G1 X30\nN5 G4 F2\n", 400)
+    shift = living.read(1, 1, 1)[0] - living.pnc.axes["X"].setpoint
+    living.pnc.close()
+    assert shift == pytest.approx(-6.0)
+
+
 @cases(
     Case(9, 1, [9]),
     Case(10, 1, [33.75]),

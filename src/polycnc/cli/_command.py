@@ -36,7 +36,7 @@ def _in_words(error: typer.BadParameter) -> str:
     first = found()[0]
     given = f"'{str(first['input'])[:40]}'"
     least, most = (getattr(error.param, name, None) for name in ("min", "max"))
-    if first["type"] in _BOUNDS:
+    if first["type"] in _BOUNDS and least is not None and most is not None:
         return f"{given} is not between {least:g} and {most:g}."
     if first["type"] in _NUMBER:
         return f"{given} is no {'whole number' if 'int' in first['type'] else 'number'}."

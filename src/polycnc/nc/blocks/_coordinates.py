@@ -109,7 +109,7 @@ class Coordinates:
         """Return what is shown of the program's own."""
         preset = self.shift if self.shifted else np.zeros(0)
         within = self._within()
-        if self.turn is None and not within.any():
+        if self.turn is None and not within.any() and not preset.any():
             return NO_SHIFTS
         return Shifts(tuple(preset.tolist()), tuple(within.tolist()), self.turn)
 
