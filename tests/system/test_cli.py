@@ -412,6 +412,10 @@ def test_view_writes_a_page_and_never_over_an_input(part: Path) -> None:
     assert printed == "time       2.073 s\nwrote      part.html\n"
     assert (part / "part.html").read_text("utf-8").startswith("<!doctype html>")
     (part / "text.html").write_text(PROGRAM)
+    (part / "two.nc").write_text("G1 X10 Z-1 F600\nT2 M6\nG1 X0\nM30\n")
+    cut = polycnc("view", "two.nc", "--stock", "box=0,0,-5,9,9,0", "--resolution", "1", cwd=part).stdout
+    assert "message    no tool is in the spindle in some cuts" in cut
+    assert "the shape of tool 2 is not known: it cuts nothing here; a comment like (T2 D=10)" in cut
     refused = polycnc("view", "text.html", cwd=part, status=2).stderr
     assert "a view cannot be written to text.html: the command reads that file" in refused
     assert (part / "text.html").read_text() == PROGRAM

@@ -38,8 +38,8 @@ class _Lengths:
         return f"{value_mm_min * self._factor:,.{self._feed_decimals}f} {self.unit}/min"
 
     def position(self, value: float, unit: str) -> str:
-        """Return a position without its unit; degrees stay degrees."""
-        return f"{value * self._factor:,.{self._decimals}f}" if unit == "mm" else f"{value:,.3f}"
+        """Return a position without its unit and without a sign of zero; degrees stay degrees."""
+        return f"{value * self._factor:z,.{self._decimals}f}" if unit == "mm" else f"{value:z,.3f}"
 
     def name(self, unit: str) -> str:
         return self.unit if unit == "mm" else unit

@@ -38,6 +38,9 @@ def view_command(
     view.save(target)
     say(f"time       {time_text(view.result.time_s)}")
     say(f"wrote      {target}")
+    if view.result.machined is not None:
+        for message in view.result.machined.messages[1:]:
+            say(f"message    {message}")
     for alarm in view.result.alarms:
         say(str(alarm), lead=bold_red("alarm: "))
     if open_page and not open_in_browser(target):

@@ -172,13 +172,21 @@ class MachiningCollector:
             comparison=None,
             messages=[
                 f"stock: {stock}, {stock.cell_mm:g} mm a cell",
-                *(
-                    f"the shape of tool {number} is not known: it cuts nothing here"
-                    for number in sorted(tally.unknown_tools)
-                ),
+                *map(_cuts_nothing, sorted(tally.unknown_tools)),
             ],
             form=form,
             course=course,
             tools=tools,
             zero_mm=self._zero_mm(),
         )
+
+
+def _cuts_nothing(tool: int) -> str:
+    if tool == 0:
+        return (
+            "no tool is in the spindle in some cuts: nothing is removed there; program T and M6 before them"
+        )
+    return (
+        f"the shape of tool {tool} is not known: it cuts nothing here; a comment like (T{tool} D=10)"
+        " or [tools] of the machine file tells it"
+    )
