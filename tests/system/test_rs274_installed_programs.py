@@ -39,7 +39,7 @@ CONFIG = _config()
 DIALECT = load_dialect("linuxcnc")
 
 REFUSED: dict[str, str] = {
-    "tool-length-probe": "G38.2 to where the probe stands",  # it begins where the operator has moved to
+    "tool-length-probe": "G38.2 to where the probe is",  # it begins where the operator has moved to
     "cone": "there is no axis 'W'",
     "lathe_g70_71_demo": "G71.1 is not known",
     "lathe_g7x_face_boring": "G72 is not known",

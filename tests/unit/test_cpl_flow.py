@@ -90,7 +90,7 @@ def test_brackets_hold_expressions_of_nc_words() -> None:
     assert errors("N10 P[5]") == ["1:5 the address P takes no expression"]
     assert errors('N10 X["A"]') == ["1:5 the address X takes a number, not a string"]
     assert errors("N10 X[A") == ["1:8 ']' is missing before the end"]
-    assert errors("N10 X[2] %") == ["1:10 '%' may stand only at the beginning of a block"]
+    assert errors("N10 X[2] %") == ["1:10 '%' belongs at the beginning of a block"]
     assert at_run_time("1 A=1\nN10 X[B]").position.line == 2  # type: ignore[union-attr]
 
 
@@ -158,11 +158,11 @@ def test_calls_keep_their_messages_and_their_skip_marks() -> None:
 
 
 def test_what_brackets_do_not_take_is_refused_where_it_stands() -> None:
-    assert errors("N10 G1 X-[2]") == ["1:9 a sign stands inside of the brackets"]
+    assert errors("N10 G1 X-[2]") == ["1:9 a sign belongs inside the brackets"]
     assert errors("N10 X[2]5") == ["1:9 '5' begins no word"]
     assert errors("N10 X[2] .5") == ["1:10 '.' begins no word"]
     assert errors("N10 X[2] Y") == ["1:10 'Y' has no number"]
-    assert errors("N10 X[2] (\xe4) \xe4") == ["1:14 'byte 0xC3' may not stand in a block"]
+    assert errors("N10 X[2] (\xe4) \xe4") == ["1:14 'byte 0xC3' is not allowed in a block"]
     assert errors("N10 (\xe4) X[2] AB=3") == ["1:14 'A' begins no word"]
     assert errors("N10 (\xe4) X[2] ]") == ["1:14 ']' begins no word"]
 
@@ -444,7 +444,7 @@ def test_sub_programs_are_called_from_nc_blocks() -> None:
     host = RecordingHost(programs={"SP": "1 #A=#A+P1", "G81": "1 #A=#A*P1"})
     ran = Ran("1 #A=2\nN10 P SP[3.5]\nN20 G81[10] (remark)\nN30 X[#A]\nN40 G81", host)
     assert ran.blocks == ["X55", "N40 G81"]
-    assert errors("N10 P SP X5", host.programs) == ["1:10 a sub-program call stands alone in its block"]
+    assert errors("N10 P SP X5", host.programs) == ["1:10 a sub-program call needs a block of its own"]
     assert errors("N10 P NONE[5]", host.programs) == ["1:5 there is no sub-program NONE"]
 
 
@@ -470,7 +470,7 @@ def test_a_program_does_not_call_itself() -> None:
 def test_calls_stand_alone_in_their_blocks() -> None:
     programs = {"P9": "1 #A=1"}
     for text in ("10 #A=1 : CALL P9", "10 CALL P9 : #A=1", "10 IF TRUE THEN CALL P9 ENDIF"):
-        assert errors(text, programs)[0].endswith("CALL stands alone in its block"), text
+        assert errors(text, programs)[0].endswith("CALL needs a block of its own"), text
     assert errors("10 CALL P9 [1,,2]", programs) == ["1:11 an argument of a sub-program is missing"]
     assert errors("10 CALL") == ["1:8 the name of a program is missing before the end"]
     assert errors("10 CALL NONE") == ["1:4 there is no sub-program NONE"]
@@ -550,7 +550,7 @@ def test_a_level_can_be_left_from_outside() -> None:
 @pytest.mark.covers("cpl.WAIT.nc", "cpl.WAIT")
 def test_wait_in_cpl_and_nc_blocks() -> None:
     assert Ran("20 WAIT\nN20 WAIT\nWAIT").events == [Waiting(line, None, None) for line in (1, 2, 3)]
-    assert errors("N20 WAIT(,1000)") == ["1:5 WAIT in an NC block stands alone"]
+    assert errors("N20 WAIT(,1000)") == ["1:5 WAIT needs an NC block of its own"]
     assert errors("20 WAIT : #A=1") == ["1:4 a block with WAIT has no colon"]
     assert errors("20 #A=1 : WAIT") == ["1:11 a block with WAIT has no colon"]
 

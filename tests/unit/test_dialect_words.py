@@ -302,7 +302,7 @@ def test_reference_positions(block: str, ends: list[str]) -> None:
 def test_a_machine_without_a_second_reference_position_says_so() -> None:
     program = "G0 X10.\nG30 X20.\n"
     assert notes(program, dialect="fanuc", config=MILL)[0] == (
-        "G30: the machine file has no reference position 2: the home position stands for it"
+        "G30: the machine file has no reference position 2: the home position is used"
     )
     assert moves(program, dialect="fanuc")[-1] == "rapid X0 stop"
     for wrong in ("P1", "P5", "P2.5"):
@@ -568,8 +568,8 @@ PAIRS = [
     ("M8 M9", "M9", "M8 and M9 exclude each other (group 'coolant')"),
     ("M9 M7 X3.", "M7 X3.", "M9 and M7 exclude each other (group 'coolant')"),
     ("S300 M3 M4 M5", "S300 M5", "M3 and M4 exclude each other (group 'spindle')"),
-    ("G1 G1 X7. F50", "G1 X7. F50", "G1 stands twice in this block"),
-    ("M8 M8", "M8", "M8 stands twice in this block"),
+    ("G1 G1 X7. F50", "G1 X7. F50", "G1 is given twice in this block"),
+    ("M8 M8", "M8", "M8 is given twice in this block"),
 ]
 
 

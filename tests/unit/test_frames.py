@@ -116,7 +116,7 @@ def test_arcs_are_scaled_turned_and_turned_over(frame: str, expected: list[str])
         ("G10 P1 X1", "G10 without L"),
         ("G10 L2 P9 X1", "P9 is not a number of these data"),
         ("G10 L50 P1 R1", "G10 L50 is not supported yet"),
-        ("G10 L2 P1 X5 Q7", "'Q' cannot stand beside G10"),
+        ("G10 L2 P1 X5 Q7", "'Q' cannot be combined with G10"),
         ("G10 L12 P1 R-1", "the radius is negative"),
         ("G54.1 P0", "there is no G54.1 P0"),
         ("G68 X0 Y0 R30\nG92 X0", "G92 while positions are turned, scaled or mirrored"),

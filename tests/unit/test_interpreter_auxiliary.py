@@ -70,7 +70,7 @@ def test_a_speed_alone_is_an_event() -> None:
         ("M5 M3", "1:4: M5 and M3 exclude each other (group 'spindle')"),
         ("M8 M9", "1:4: M8 and M9 exclude each other (group 'coolant')"),
         ("M9 M7", "1:4: M9 and M7 exclude each other (group 'coolant')"),
-        ("M8 M8", "1:4: M8 stands twice in this block"),
+        ("M8 M8", "1:4: M8 is given twice in this block"),
         ("M0 M30", "1:4: M0 and M30 exclude each other (group 'stop')"),
         ("M98 P1 M30", "1:8: M98 and M30 exclude each other (group 'stop')"),
         ("M1.5", "1:1: there is no M1.5"),

@@ -44,10 +44,10 @@ NO_LANGUAGE = "dialect 'din' reads no variables, expressions or program flow (1 
     [
         # The word that is wrong, else the first that is no block number.
         ("N10 G1 X1 F100 Q5 E5", "1:19: the address 'E' is not known in dialect 'din'"),
-        ("N10 G1 X1 X2", "1:11: 'X' stands twice in this block"),
-        ("N10 N20", "1:5: 'N' stands twice in this block"),
+        ("N10 G1 X1 X2", "1:11: 'X' is given twice in this block"),
+        ("N10 N20", "1:5: 'N' is given twice in this block"),
         ("N10 G17 G18", "1:9: G17 and G18 exclude each other (group 'plane')"),
-        ("N10 G1 G1 X1", "1:8: G1 stands twice in this block"),
+        ("N10 G1 G1 X1", "1:8: G1 is given twice in this block"),
         ("G77", "1:1: G77 is not known in dialect 'din'"),
         ("G1.5", "1:1: G1.5 is not known in dialect 'din'"),
         ("G-1", "1:1: G-1 is not known in dialect 'din'"),
@@ -64,7 +64,7 @@ NO_LANGUAGE = "dialect 'din' reads no variables, expressions or program flow (1 
         ("G1 F1,250.5", "1:4: 'F1,250.5' is no number"),
         ("G1 Y5 Xabc F100", "1:7: 'X' has no number"),
         ("G1X10,Y5", "1:6: ',Y' (a chamfer or a rounding between blocks) is not known here"),
-        ("G1 X10,", "1:7: ',' may not stand in a block"),
+        ("G1 X10,", "1:7: ',' is not allowed in a block"),
         ("G1 X10 ,C2", "1:8: ',C' (a chamfer or a rounding between blocks) is not known here"),
         ("G0 U5", "1:4: there is no axis 'U' on machine 'test'"),
         ("G0 X1=5", "1:4: there is no axis 'X1' on machine 'test'"),
@@ -73,7 +73,7 @@ NO_LANGUAGE = "dialect 'din' reads no variables, expressions or program flow (1 
         ("G1 X", "1:4: 'X' has no number"),
         ("G1 5", "1:4: '5' has no letter"),
         ("G1 X5 (open", "1:7: the comment is not closed"),
-        ("G1 X5 & Y1", "1:7: '&' may not stand in a block"),
+        ("G1 X5 & Y1", "1:7: '&' is not allowed in a block"),
         ("X1.2.3", "1:5: '.3' has no letter"),
     ],
 )

@@ -142,7 +142,7 @@ def test_ways_count_from_the_start_of_the_curve_and_inches_are_inches() -> None:
         ("G5.2 X1 Y2 P1\nG5.2 P2", "6: a weight without a control point"),
         ("G5.2 X1 Y2 P1\nP2", "1: 'P' has no meaning in this block"),
         ("G5.2 X1 Y2 P1\nX3 Y2 P1 L4", "10: 'L' has no meaning in this block"),
-        ("G5.2 X1 Y2 P1\nX9 Y2 P1\nG5.3 X4", "6: 'X' cannot stand beside this function"),
+        ("G5.2 X1 Y2 P1\nX9 Y2 P1\nG5.3 X4", "6: 'X' cannot be combined with this function"),
         ("G5.2 X1 Y2 P1\nG1 X3", "1: G1 in a curve (G5.2) that is not ended"),
         ("G5.2 X1 Y2 P1\nX4 Y3 P1 G91", "10: G91 in a curve (G5.2) that is not ended"),
         ("G5.2 X1 Y2 P1\nG92 X0", "1: G92 in a curve (G5.2) that is not ended"),

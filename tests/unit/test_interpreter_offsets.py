@@ -188,7 +188,7 @@ def test_home_of_an_axis_that_turns_over_is_the_short_way() -> None:
         ("G28 G92 X1", "2:5: G28 and G92 exclude each other (group 'non modal')"),
         ("G28 G53 X1", "2:5: G28 and G53 exclude each other (group 'non modal')"),
         ("G4 P1 G28", "2:7: G4 and G28 exclude each other: both need their own block"),
-        ("G92.1 X1", "2:7: 'X' cannot stand beside this function"),
+        ("G92.1 X1", "2:7: 'X' cannot be combined with this function"),
         ("G54 G55", "2:5: G54 and G55 exclude each other (group 'work offset')"),
     ],
 )

@@ -131,7 +131,7 @@ def test_an_error_in_another_file_names_that_file(tmp_path: Path) -> None:
     sub.write_text("X10\n  X20 X30\n")
     channel = prepare(ProgramText.from_path(main))
     assert channel.error is not None
-    assert str(channel.error).splitlines()[0] == f"{sub}:2:7: 'X' stands twice in this block"
+    assert str(channel.error).splitlines()[0] == f"{sub}:2:7: 'X' is given twice in this block"
 
 
 def test_a_move_held_back_by_compensation_is_named_in_its_own_file(tmp_path: Path) -> None:

@@ -45,7 +45,7 @@ REFUSALS = [
     ("G41.1 X3", "without D"),
     ("G42.1 D3 L2", "in another plane than G18"),
     ("G92.3\n#5211=5", "while its shift is in force"),
-    ("G91 G81 @5 ^90 Z-1 R2 L3 F100", "the tool stands at zero"),
+    ("G91 G81 @5 ^90 Z-1 R2 L3 F100", "the tool is at zero"),
     ("M3 S100\nG33 Z-3 K-1", "without a lead above zero"),
     ("F100 G93\nG38.2 X3", "with inverse time feed"),
     ("M3 S100\nG96 S30\nG33 Z-3 K1", "constant surface speed"),
@@ -57,7 +57,7 @@ REFUSALS = [
     ("M3 S100\nG76 P1 Z-9 I-1 J.000001 K1", "too many passes"),
     ("M3 S100\nG76 P-1 Z-9 I-1 J.2 K1", "the pitch is not above zero"),
     ("G38.2 X3", "a feed move without a feed"),
-    ("F100 G38.2 X0", "to where the probe stands"),
+    ("F100 G38.2 X0", "to where the probe is"),
     ("G55\nG10 L2 P2 R30\nG18 G2 X3 Z1 R5 F100", "an arc outside the plane that the work offset turns"),
 ]
 
@@ -158,7 +158,7 @@ def test_functions_have_their_words_in_their_events(tmp_path: Path) -> None:
         ("M61", "M61 without Q"),
         ("M48 M88", "M88 is not known"),
         ("M49\nM200 P1", "M200 is not known"),
-        ("M62 P1 M62 P2", "stands twice"),
+        ("M62 P1 M62 P2", "is given twice"),
     ],
 )
 def test_what_functions_refuse(program: str, what: str, tmp_path: Path) -> None:

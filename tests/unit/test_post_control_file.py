@@ -170,7 +170,7 @@ WRONG = [
     ('"X%.2f"', '"X%.2f\\n"', "more than one line", ""),
     ("X = {", "'X Y' = {", "'X Y' is not a search key", "begin with a letter"),
     ("X = {", "outputorder = {", "'outputorder' is a reserved word", ""),
-    ("X = {", "m05 = {", "the search key 'm05' stands in [m_code] too", "used once"),
+    ("X = {", "m05 = {", "the search key 'm05' is in [m_code] too", "used once"),
     ("G00 = { code", "G01 = { code", "[nc_code] gives 'G01', which no other section defines", "mean G00?"),
     ("G00 = { code", "X = { code", "'X' is no G or M code and has no code text", ""),
     ("[g_code]", "g00 = {}\n[g_code]", "[nc_code] gives 'g00' twice", ""),

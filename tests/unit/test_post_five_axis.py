@@ -288,7 +288,7 @@ def test_arcs_and_cycles_stay_only_where_the_part_is_not_turned() -> None:
     ("axes", "more", "said"),
     [
         ((C_TABLE, axis("C", "table", X, Z)), {}, "both axes are C"),
-        ((axis("B", "head", Y, Z), axis("A", "table", X, Z)), {}, "the head stands before the table"),
+        ((axis("B", "head", Y, Z), axis("A", "table", X, Z)), {}, "the head comes before the table"),
         ((C_TABLE, axis("A", "table", (0.0, 0.0, 3.0), Z)), {}, "the second axis does not tilt the tool"),
         ((C_TABLE, axis("A", "table", (0.0, 0.0, 0.0), Z)), {}, "the direction has no length"),
         ((C_TABLE, axis("A", "table", X, Z, (10.0, 90.0))), {}, "the limits do not lie on both sides of 0"),

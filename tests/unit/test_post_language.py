@@ -201,10 +201,10 @@ def test_ifs_side_by_side_are_not_nested() -> None:
 @pytest.mark.parametrize(
     ("macro", "what"),
     [
-        ("ENDIF", "ENDIF stands after no IF"),
+        ("ENDIF", "ENDIF has no IF before it"),
         ("IF(1==1)\nELSE\nELSE\nENDIF", "an ELSE came before"),
         ("IF(1==1)\nELSE\nELSE IF(1==1)\nENDIF", "an ELSE came before"),
-        ("IF(1==1)\nELSE A\nENDIF", "ELSE stands alone in its line"),
+        ("IF(1==1)\nELSE A\nENDIF", "ELSE needs a line of its own"),
         ("IF(1==1) A\nENDIF", "the condition does not go on with 'A'"),
         ("IF 1==1\nENDIF", "'(' is missing before '1'"),
         ("IF(1==1 2==2)\nENDIF", "')' is missing before '2'"),

@@ -186,7 +186,7 @@ def test_g10_shifts_the_work_coordinates() -> None:
         ("G10 P3 Y2.", "G10 P3 without a value"),
         ("G10 P5000 X1.", "there is no offset P5000"),
         ("G10 L10 P1 X1.", "G10 L10 is not supported yet"),
-        ("G10 P3 X1. I5.", "'I' cannot stand beside G10"),
+        ("G10 P3 X1. I5.", "'I' cannot be combined with G10"),
     ],
 )
 def test_g10_that_cannot_be(program: str, text: str) -> None:
@@ -424,7 +424,7 @@ def _text(value: float) -> str:
             "G76 P010060 Q100 R2.\nG76 X27.4 Z-20. P1300 Q500 F2.",
             "G76: the allowance is no part of the thread's height",
         ),
-        ("G76 X27.4 Z2. P1300 Q500 F2.", "G76: the thread has no length, or lies where the tool stands"),
+        ("G76 X27.4 Z2. P1300 Q500 F2.", "G76: the thread has no length, or lies where the tool is"),
     ],
 )
 def test_threads_in_many_passes_that_cannot_be(program: str, text: str) -> None:

@@ -114,7 +114,7 @@ def _swept(sweeps: Iterable[str]) -> dict[str, tuple[float | str, ...]]:
     for text in sweeps:
         name, values = parse_sweep(text)
         if name in swept:
-            raise UsageError(f"--sweep {name} stands twice", hint=f"Write all values in one: {name}=A,B,C.")
+            raise UsageError(f"--sweep {name} is given twice", hint=f"Write all values in one: {name}=A,B,C.")
         swept[name] = values
     return swept
 

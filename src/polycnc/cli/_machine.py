@@ -83,5 +83,5 @@ def _print_from(source: Path, output: Path | None) -> None:
     left_out = text.count("\n# - ")
     say(
         f"wrote      {output}"
-        + (f"; what it has no place for stands at its top ({left_out})" if left_out else "")
+        + (f"; what it has no place for is at its top ({left_out})" if left_out else "")
     )

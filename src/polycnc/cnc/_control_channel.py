@@ -291,7 +291,7 @@ class ControlChannel:
             ControlError: They do.
         """
         if not self.at_rest:
-            raise ControlError(Refusal.RUNNING, "the axes are still braking", hint="Wait until they stand.")
+            raise ControlError(Refusal.RUNNING, "the axes are still braking", hint="Wait until they stop.")
 
     def _take_back(self, step: Step) -> None:
         """Take lent axes back, which are where they were, and go on."""

@@ -53,7 +53,7 @@ def check_hands_off(channel: ControlChannel, manual: ManualMotion) -> None:
         ControlError: One of the channel's axes is.
     """
     if manual.moves(channel.axes):
-        raise ControlError(Refusal.RUNNING, "axes are moved by hand", hint="Wait until they stand.")
+        raise ControlError(Refusal.RUNNING, "axes are moved by hand", hint="Wait until they stop.")
 
 
 def check_referenced(channel: ControlChannel, manual: ManualMotion) -> None:

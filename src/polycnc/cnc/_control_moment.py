@@ -102,7 +102,7 @@ class Keeping:
         """Return the whole state, to go back to with `restore`; what is durable (programs, tables, parts) is not in it.
 
         Raises:
-            SnapshotError: A program is under way whose language cannot tell where it stands.
+            SnapshotError: A program is under way whose language cannot tell where it is.
         """
         runs = tuple(
             None if channel.run is None else channel.run.snapshot(find=self._text)

@@ -39,7 +39,7 @@ def check_free(
         )
     kind = profiles.motions[i].kind
     if kind is not ManualKind.NONE and kind is not same:
-        raise ControlError(Refusal.RUNNING, f"axis {axis} is moving ({kind})", hint="Wait until it stands.")
+        raise ControlError(Refusal.RUNNING, f"axis {axis} is moving ({kind})", hint="Wait until it stops.")
 
 
 def check_direction(direction: int) -> None:

@@ -158,9 +158,7 @@ class ProgramCommands:
             if self._of.data.reference_required:
                 check_referenced(chosen, self._of.manual)
             if not 1 <= line <= text.content.count(b"\n") + 1:
-                raise ControlError(
-                    Refusal.NOT_FOUND, f"there is no line {line}", hint="Give one that there is."
-                )
+                raise ControlError(Refusal.NOT_FOUND, f"there is no line {line}", hint="Use an existing one.")
             search = Search(line) if line > 1 else None if is_mdi else chosen.search
             chosen.begin(text, mdi=is_mdi, step=step, search=search)
             self._of.timers.start_cycle()

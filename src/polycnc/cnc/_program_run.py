@@ -261,7 +261,7 @@ class ProgramRun:
         program; the programs that it finds must be the same when the run goes back.
 
         Raises:
-            SnapshotError: a language executes the program, and cannot tell where it stands.
+            SnapshotError: a language executes the program, and cannot tell where it is.
         """
         return self._going_back.snapshot(self.program, find)
 

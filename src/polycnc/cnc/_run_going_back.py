@@ -23,7 +23,7 @@ class RunGoingBack:
         """Return what the run of `program` holds.
 
         Raises:
-            SnapshotError: The program is still coming, or its language cannot tell where it stands.
+            SnapshotError: The program is still coming, or its language cannot tell where it is.
         """
         runner = self._runner
         if isinstance(program, IncomingText):

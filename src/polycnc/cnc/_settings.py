@@ -31,7 +31,7 @@ class Settings:
         for channel in self._of.channels:
             check_over(channel)
         if self._of.manual.active:
-            raise ControlError(Refusal.RUNNING, "axes are moved by hand", hint="Wait until they stand.")
+            raise ControlError(Refusal.RUNNING, "axes are moved by hand", hint="Wait until they stop.")
         self._of.machine.change_axes(axes)
         self._of.manual.change_axes(axes)
         self._change_config()

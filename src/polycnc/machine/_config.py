@@ -210,7 +210,7 @@ class SpindleConfig(StrictModel):
     orientation_rpm: Rate = Field(
         default=60.0, description="Speed at which the spindle is brought to an angle."
     )
-    orientation_deg: float = Field(default=0.0, description="Angle at which an oriented spindle stands.")
+    orientation_deg: float = Field(default=0.0, description="Angle at which an oriented spindle stops.")
     laser: bool = Field(
         default=False,
         description="S is the power of a laser: S, M3, M4 and M5 act without a stop, where the next move begins.",

@@ -80,7 +80,7 @@ _TABLE_HEAD = "| key | value | range | default | meaning |\n|---|---|---|---|---
 _SECTIONS: tuple[tuple[str, str, type[BaseModel], type[BaseModel]], ...] = (
     (
         "The machine",
-        "Plain values stand at the top of the file, before the first table. Positions in `offsets` and "
+        "Plain values come at the top of the file, before the first table. Positions in `offsets` and "
         "`start` are in mm or degree as the axis has it; an axis that an offset leaves out has 0 there.",
         MachineConfig,
         MachineConfig,

@@ -91,7 +91,7 @@ def _result() -> Schema:
             "rapid_path_mm": _length("Rapids"),
             "top_feed_mm_min": _number("Highest speed of a cut, mm/min.", low=0.0),
             "axis_units": _map({"enum": ["mm", "deg"]}, "The unit of each axis."),
-            "end_position_mm": _map({"type": "number"}, "Where each axis stands at the end, mm or degree."),
+            "end_position_mm": _map({"type": "number"}, "Where each axis is at the end, mm or degree."),
             "extents_mm": _EXTENTS,
             "alarms": _list(_ALARM),
             "tool_times": _TOOL_TIMES,

@@ -80,7 +80,7 @@ def arc(block: BlockContext, end: Point, clockwise: bool) -> Arc | None:
         if block.dialect.turns_work and turn is not None and {p, q} != {turn.p, turn.q}:
             raise block.problem(
                 "an arc outside the plane that the work offset turns",
-                "Take R out of G10 L2, or write lines.",
+                "Remove R from G10 L2, or write lines.",
                 block.move_word,
             )
         clockwise ^= frame.turns_over(p, q)

@@ -252,7 +252,7 @@ def _set_system(block: BlockContext, g: GWord, table: int, name: str) -> None:
         here = (modal.position - within).tolist()
         values = {axis: here[axis] - value for axis, value in values.items()}
     if angle is not None and NO_AXIS in (modal.letter_axis[ord("X") - 65], modal.letter_axis[ord("Y") - 65]):
-        raise block.problem("the machine has no plane XY to turn", "Take R out.", block.words.first("R"))
+        raise block.problem("the machine has no plane XY to turn", "Remove R.", block.words.first("R"))
     refuse_rest(block, g)
     tables.set_offset(name, values)
     if angle is not None:

@@ -47,7 +47,7 @@ def set_diameters(block: BlockContext, g: GWord) -> None:
     modal = block.after.modal
     axis = int(modal.letter_axis[ord("X") - ord("A")])
     if axis == NO_AXIS:
-        raise block.problem(f"G{g.code} on a machine without an X axis", "Take it out.", g.word)
+        raise block.problem(f"G{g.code} on a machine without an X axis", "Remove it.", g.word)
     set_diameter(modal, axis, g.action is Action.DIAMETERS)
 
 

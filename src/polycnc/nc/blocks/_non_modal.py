@@ -62,7 +62,7 @@ def probe(block: BlockContext, g: GWord) -> list[QueueItem]:
         raise block.problem(f"G{g.code} with inverse time feed (G93)", "Select G94 first.", g.word)
     move = _measuring_move(block, g)
     if move.end == move.start:
-        raise block.problem(f"G{g.code} to where the probe stands", "Say how far to go at the most.", g.word)
+        raise block.problem(f"G{g.code} to where the probe is", "Say how far to go at the most.", g.word)
     leaves, needed = PROBES[g.action]
     block.after.probe = Probe(
         frozenset(range(len(block.after.axis_names))),
@@ -161,7 +161,7 @@ def _reference_number(block: BlockContext, g: GWord) -> int:
     known = any(len(axis.reference_positions) > number - 2 for axis in block.after.machine.axes)
     if not known and not (number == 2 and block.after.references[1] is not None):
         block.note(
-            f"G{g.code}: the machine file has no reference position {number}: the home position stands for it"
+            f"G{g.code}: the machine file has no reference position {number}: the home position is used"
         )
     return number
 

@@ -145,7 +145,7 @@ def _angle(block: BlockContext) -> float | None:
     if NO_AXIS in (whole[AXIS_P], whole[AXIS_Q]):
         letters = PLANE_LETTERS[int(whole[PLANE])][:2]
         raise block.problem(
-            f"the machine has no plane {letters} to turn", "Take R out.", block.words.first("R")
+            f"the machine has no plane {letters} to turn", "Remove R.", block.words.first("R")
         )
     return angle
 

@@ -38,7 +38,7 @@ def polar_words(block: BlockContext) -> dict[int, float]:
     scale = length_scale(modal)
     absolute = bool(modal.whole[ABSOLUTE])
     if old_radius == 0.0 and (not absolute or angle_deg is None):
-        raise block.problem("the tool stands at zero, which has no angle", "Write @ and ^ with G90.", word)
+        raise block.problem("the tool is at zero, which has no angle", "Write @ and ^ with G90.", word)
     if absolute:
         to = old_radius if radius is None else radius * scale
         to_deg = old_deg if angle_deg is None else angle_deg

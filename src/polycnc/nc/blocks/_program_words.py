@@ -24,7 +24,7 @@ def outcome(block: BlockContext) -> Outcome:
         if m.action is MAction.SUB_RETURN and "P" in block.words.by_letter:
             raise block.problem(
                 f"M{m.code} P: a return to a block number cannot be carried out",
-                "Take P out, or call another sub-program.",
+                "Remove P, or call another sub-program.",
                 block.words.by_letter["P"],
             )
         if m.action in _OUTCOMES:

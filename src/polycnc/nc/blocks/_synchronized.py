@@ -128,7 +128,7 @@ def _threading(block: BlockContext, values: dict[int, float]) -> Iterator[QueueI
     if wrong := [axis for axis in values if axis != z]:
         name = block.after.axis_names[wrong[0]]
         raise block.problem(
-            f"a thread of several passes moves along Z, not {name}", "Take it out.", block.words.first(name)
+            f"a thread of several passes moves along Z, not {name}", "Remove it.", block.words.first(name)
         )
     start = block.start
     end = motion.target(block, values)[z]

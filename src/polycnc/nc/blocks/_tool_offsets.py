@@ -110,7 +110,7 @@ def set_tool(block: BlockContext, g: GWord, table: int, number: int) -> None:
     for letter in "IJ":
         if word := block.words.take(letter):
             raise block.problem(
-                f"{letter} is an angle of a tool, which tools do not have here", "Take it out.", word
+                f"{letter} is an angle of a tool, which tools do not have here", "Remove it.", word
             )
     values = axis_words(block)
     if table != 1 and state.frame.active:

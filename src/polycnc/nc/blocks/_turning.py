@@ -394,7 +394,7 @@ def threads(start: Point, numbers: Threading) -> list[Step]:
     way = _sign(numbers.end[1] - start[1])
     inwards = _sign(numbers.end[0] + numbers.taper - start[0])
     if way == 0.0 or inwards == 0.0:
-        raise TurningError("the thread has no length, or lies where the tool stands", "Check X and Z.")
+        raise TurningError("the thread has no length, or lies where the tool is", "Check X and Z.")
     chamfer = numbers.chamfer_leads * numbers.lead_mm
     slope = math.tan(math.radians(0.5 * numbers.angle_deg))
     steps: list[Step] = []

@@ -81,7 +81,9 @@ def refuse_unused(block: BlockContext) -> None:
             block.note(f"'{name}' has no effect here and is ignored")
         elif name in block.after.axis_names:
             raise block.problem(
-                f"'{name}' cannot stand beside this function", "Write the move in a block of its own.", word
+                f"'{name}' cannot be combined with this function",
+                "Write the move in a block of its own.",
+                word,
             )
         elif of_another_channel(name) in block.after.axis_names:
             raise block.problem(
@@ -114,4 +116,4 @@ def refuse_rest(block: BlockContext, g: GWord) -> None:
     """Refuse what is left in the block before anything is written that cannot be taken back."""
     for name, word in block.words.unused():
         if name not in block.dialect.ignored_addresses:
-            raise block.problem(f"'{name}' cannot stand beside G{g.code}", "Remove it.", word)
+            raise block.problem(f"'{name}' cannot be combined with G{g.code}", "Remove it.", word)

@@ -222,7 +222,7 @@ class WordSorter:
             ProgramError: the dialect refuses them.
         """
         twice = first == second
-        what = f"{first} stands twice in this block"
+        what = f"{first} is given twice in this block"
         if not twice:
             what = f"{first} and {second} exclude each other (group '{group.replace('_', ' ')}')"
         if self._dialect.same_group == "error":
@@ -240,7 +240,7 @@ def _blocks_with(code: str, text: ProgramText) -> int:
 def _add_value(word: Word, words: BlockWords, fail: Fail) -> None:
     letter = word.letter if word.index is None else f"{word.letter}{word.index}"
     if letter in words.by_letter:
-        raise fail(f"'{letter}' stands twice in this block", "Write each address once.", word)
+        raise fail(f"'{letter}' is given twice in this block", "Write each address once.", word)
     words.by_letter[letter] = word
 
 

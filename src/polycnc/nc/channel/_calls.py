@@ -289,7 +289,7 @@ class Calls:
             return self._language.save(under_way)
         if any(source is not None for _, source in under_way):
             raise SnapshotError(
-                "a program with statements is under way, whose language cannot tell where it stands",
+                "a program with statements is under way, whose language cannot tell where it is",
                 hint="Take the snapshot before or after it.",
             )
         return None

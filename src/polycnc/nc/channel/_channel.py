@@ -280,7 +280,7 @@ class Channel:
         The queue itself belongs to the machine.
 
         Raises:
-            SnapshotError: a language executes a program, and cannot tell where it stands.
+            SnapshotError: a language executes a program, and cannot tell where it is.
         """
         self._search.refuse_held()
         return ChannelSnapshot(

@@ -78,7 +78,7 @@ ERRORS: dict[str, tuple[str, str]] = {
     ),
     "INVALID COMPONENT": ("", "There is no such byte or record."),
     "BLOCK EXCEEDS 1024 BYTES": ("", "PRN# writes a longer record."),
-    "INVALID CHARACTER": ("", "A character cannot stand in a record."),
+    "INVALID CHARACTER": ("", "A record cannot contain this character."),
     "INVALID INTEGER VALUE": ("", "INP# reads a number that is too large for INTEGER."),
     "INVALID FLOAT VALUE": ("", "INP# reads a number that is too large for REAL."),
     "FORMAT NOT PERMITTED": (

@@ -97,7 +97,7 @@ SCREEN = (
     _F("CLR", "I", "Clear the graphic window.", command=True),
     _F("CLS", "I", "Clear the whole screen.", command=True),
     _F("ENDDLG", "I", "End a dialog.", command=True),
-    _F("DLG", "I", "Begin a dialog, in which PRN and INP may stand.", command=True),
+    _F("DLG", "I", "Begin a dialog, in which PRN and INP are allowed.", command=True),
     _F("TFO(font,size,cut,orientation)", "I", "Select the font of texts.", least=1, command=True),
     _F("COL([graphics],[text],[background],[table],[softkeys],[background])", "I", "Select colours.",
        least=1, command=True),

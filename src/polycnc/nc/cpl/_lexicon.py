@@ -40,8 +40,8 @@ LEXICON = Lexicon(
     folded=("name", "label"),
     unfinished={
         '"': ("the text has no end", 'write " after it, in the same line'),
-        "#": ("# stands before no name", "a global variable is written #NAME"),
-        "@": ("@ stands before no name", "a permanent variable is written @1 or @NAME"),
+        "#": ("# has no name after it", "a global variable is written #NAME"),
+        "@": ("@ has no name after it", "a permanent variable is written @1 or @NAME"),
     },
 )
 

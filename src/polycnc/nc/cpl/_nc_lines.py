@@ -70,7 +70,7 @@ def read_nc_line(
     if letter == "W" and (wait := _WAIT.match(text, at, end)):
         if wait[1] is not None or text[wait.end() : end].strip(" \t\r"):
             raise Flaw(
-                at, "WAIT in an NC block stands alone", "parameters of WAIT need a CPL block: 20 WAIT(,1000)"
+                at, "WAIT needs an NC block of its own", "parameters of WAIT need a CPL block: 20 WAIT(,1000)"
             )
         return [Wait(at, line, skip=level)]
     call: SubCall | None = None
@@ -140,7 +140,7 @@ def _sub_call(
     rest = _REMARK.sub("", text[after:end]).strip(" \t\r")
     if rest:
         raise Flaw(
-            after, "a sub-program call stands alone in its block", "put the other words into the next block"
+            after, "a sub-program call needs a block of its own", "put the other words into the next block"
         )
     given = tuple(each for each in arguments if each is not None)
     return SubCall(at, line, address, name, given), after
@@ -197,7 +197,7 @@ def _hole(text: str, end: int, found: re.Match[str]) -> NcWord:
     """Return the word whose value stands in brackets."""
     at = found.start()
     if found[3]:
-        raise Flaw(at, "a sign stands inside of the brackets", "write X[-A], not X-[A]")
+        raise Flaw(at, "a sign belongs inside the brackets", "write X[-A], not X-[A]")
     letter = (found[1] or "").upper()
     if letter and letter in "NP":
         hint = "block numbers and sub-programs are checked before the program starts"

@@ -67,7 +67,7 @@ def unary(tree: Unary[Leaf], operand: Typed, double: bool) -> Typed:
             return Typed(prefix("~", operand.python), "I")
         raise Flaw(tree.at, f"NOT takes BOOLEAN or INTEGER, not {KIND_NAMES[operand.kind]}")
     if operand.kind not in NUMERIC:
-        raise Flaw(tree.at, f"a sign stands before a number, not before {KIND_NAMES[operand.kind]}")
+        raise Flaw(tree.at, f"a sign belongs before a number, not before {KIND_NAMES[operand.kind]}")
     return Typed(prefix(tree.operator, rounded(operand, double)), operand.kind)
 
 

@@ -203,7 +203,7 @@ class _ProgramReader:
         reader.tokens.expect("=", "FOR I%=1 STEP 2 TO 9")
         start = reader.expression()
         step = reader.expression() if reader.tokens.take("STEP") else None
-        reader.tokens.expect("TO", "STEP stands before TO: FOR I%=1 STEP 2 TO 9")
+        reader.tokens.expect("TO", "STEP comes before TO: FOR I%=1 STEP 2 TO 9")
         statement = For(at, counter, start, step, reader.expression())
         self._read.begin(statement, statement.body)
         _ends(reader)
@@ -320,7 +320,7 @@ class _ProgramReader:
         unlinked = tokens.take("DIN")
         if self._in_block or tokens.token.kind != END:
             raise Flaw(
-                at, "CALL stands alone in its block", "put the other instructions into blocks of their own"
+                at, "CALL needs a block of its own", "put the other instructions into blocks of their own"
             )
         self._read.body.append(SubCall(at, self._line, "", found[0], arguments, unlinked))  # type: ignore[arg-type]
 

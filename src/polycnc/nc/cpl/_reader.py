@@ -120,7 +120,7 @@ class Reader:
     def _in_parentheses(self) -> Expression:
         opening = self.tokens.step()
         if self._parentheses >= PARENTHESES:
-            hint = f"at most {PARENTHESES} parentheses stand inside each other; keep a part in a variable"
+            hint = f"at most {PARENTHESES} parentheses may be nested; keep a part in a variable"
             raise Flaw(opening.at, NESTING_TOO_DEEP.what, hint, code=NESTING_TOO_DEEP.code)
         self._parentheses += 1
         self.tokens.enter(opening.at)
@@ -149,7 +149,7 @@ def assignment_missing(reader: Reader) -> Flaw:
     """Return the flaw of a word that stands where an assignment is expected."""
     token = reader.tokens.token
     shown = "the end of the line" if token.kind == END else str(token)
-    hint = f"a variable is followed by = and its value, not by {shown}; keywords stand apart from numbers: GOTO 10"
+    hint = f"a variable is followed by = and its value, not by {shown}; keywords are separated from numbers: GOTO 10"
     return Flaw(token.at, ASSIGNMENT_MISSING.what, hint, code=ASSIGNMENT_MISSING.code)
 
 

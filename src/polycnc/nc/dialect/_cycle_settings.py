@@ -52,7 +52,7 @@ class Cycles(StrictModel):
     )
     levels_as_written: bool = Field(
         default=False,
-        description="R and Z are positions or ways by the mode in force where a hole is drilled, not where they stand.",
+        description="R and Z are absolute or incremental by the mode in force at the hole, not where they are written.",
     )
     keeps_dwell: bool = Field(
         default=False, description="A tapping cycle without P waits as long as the last P of a cycle said."

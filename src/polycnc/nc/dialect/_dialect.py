@@ -210,7 +210,7 @@ class Dialect(StrictModel):
         description='Addresses of a dwell and their unit; "s_or_ms": seconds with a decimal point, else ms.',
     )
     ignored_addresses: tuple[str, ...] = Field(
-        default=(), description="Addresses that may stand anywhere without effect."
+        default=(), description="Addresses that are allowed anywhere, without effect."
     )
     blocks_ahead: Annotated[int, Field(ge=1)] | None = Field(
         default=None,
@@ -257,7 +257,7 @@ class Dialect(StrictModel):
     )
     machine_coordinates_in_g91: bool = Field(
         default=True,
-        description="Moves in machine coordinates (G53) may stand where positions are incremental.",
+        description="Moves in machine coordinates (G53) are allowed where positions are incremental.",
     )
     held_by_compensation: Annotated[tuple[str, ...], AfterValidator(_groups_or_m_codes)] = Field(
         default=(),

@@ -91,7 +91,7 @@ def argument_numbers(arguments: list[Address] | tuple[Address, ...]) -> list[int
             numbers.append(_FIRST_REPEATED + 3 * row + place)
             continue
         if letter in seen:
-            raise Flaw(word.at, f"the argument {letter} stands twice", "Write it once.", code="PS0129")
+            raise Flaw(word.at, f"the argument {letter} is given twice", "Write it once.", code="PS0129")
         seen.add(letter)
         numbers.append(_ABC.get(letter, ARGUMENTS_I[letter]))
     return numbers

@@ -160,7 +160,7 @@ class Expressions:
 
 
 def no_value(at: int) -> Flaw:
-    return Flaw(at, "a condition stands where a number must", "Compare only in IF and WHILE.", code="PS0114")
+    return Flaw(at, "a condition where a number is needed", "Compare only in IF and WHILE.", code="PS0114")
 
 
 def may_overflow(tree: Expression) -> bool:

@@ -452,5 +452,5 @@ def _meaning(error: Exception) -> tuple[str, str, str]:
 
 def error_at(text: ProgramText, flaw: Flaw) -> ProgramError:
     """Return an error of a program."""
-    hint = flaw.hint or "A block holds words like X12.5 or X#1, or a statement; remarks stand in a comment."
+    hint = flaw.hint or "A block holds words like X12.5 or X#1, or a statement; remarks go into a comment."
     return ProgramError(flaw.what, code=flaw.code, position=text.position(flaw.at), hint=hint)

@@ -117,7 +117,7 @@ def _letters_and_commas(code: str) -> SyntaxHint | None:
             "Write the chamfer or the rounding as a block of its own.",
         )
     return SyntaxHint(
-        comma.start(), "',' may not stand in a block", "A block holds words like X12.5; take it out."
+        comma.start(), "',' is not allowed in a block", "A block holds words like X12.5; remove it."
     )
 
 

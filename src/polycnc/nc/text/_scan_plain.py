@@ -36,7 +36,7 @@ _MESSAGE = re.compile(rf"{_B}MSG{_B},(?P<text>.*)", re.IGNORECASE | re.ASCII)
 
 _KNOWN = re.compile(rf"[A-Za-z0-9+\-./:%{re.escape(BLANK_BYTES.decode('ascii'))}]")
 
-_REMARK_HINT = "A block holds words like X12.5; remarks stand in a comment."
+_REMARK_HINT = "A block holds words like X12.5; remarks go into a comment."
 
 
 @dataclass(frozen=True, slots=True)
@@ -270,9 +270,9 @@ class _LineReader:
             number = _matched(_BARE, self.line, self.place)[0]
             return self._error(f"'{number}' has no letter", "Write the address before it, like X12.5.")
         if char in "/:%":
-            return self._error(f"'{char}' may stand only at the beginning of a block", _REMARK_HINT)
+            return self._error(f"'{char}' belongs at the beginning of a block", _REMARK_HINT)
         shown = char if char.isascii() and char.isprintable() else f"byte 0x{ord(char):02X}"
-        return self._error(f"'{shown}' may not stand in a block", _REMARK_HINT)
+        return self._error(f"'{shown}' is not allowed in a block", _REMARK_HINT)
 
     def _error(self, what: str, hint: str) -> ProgramError:
         return ProgramError(what, position=self.text.position(self.offset + self.place), hint=hint)

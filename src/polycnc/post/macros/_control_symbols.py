@@ -117,7 +117,7 @@ def _new_name(section: str, key: str, spelling: re.Pattern[str], taken: dict[str
         raise ControlFlaw(f"'{key}' is a reserved word", "choose another search key", path)
     if name in taken:
         raise ControlFlaw(
-            f"the search key '{key}' stands in [{taken[name]}] too",
+            f"the search key '{key}' is in [{taken[name]}] too",
             "a search key is used once; capitals make no difference",
             path,
         )

@@ -103,10 +103,10 @@ WORDS: tuple[WordRow, ...] = (
     WordRow("MACHINENAME", "text", "name in the MACHIN record"),
     WordRow("UNITS", "number", "21: lengths are written in mm; 20: in inch"),
     WordRow("WORD", "text", "first word of the record, like AUXFUN", added=True, kept=True),
-    WordRow("WORDTEXT", "text", "what stands after its slash, as it stands", added=True, kept=True),
+    WordRow("WORDTEXT", "text", "what follows its slash, unchanged", added=True, kept=True),
     WordRow("NUMBERS", "number", "how many numbers the record has", added=True, kept=True),
     *(
-        WordRow(name, "number", f"its number {name[6:]} as it stands, 0 if it has fewer", added=True, kept=True)
+        WordRow(name, "number", f"its number {name[6:]} unchanged, 0 if it has fewer", added=True, kept=True)
         for name in _NUMBERS
     ),
 )  # fmt: skip
@@ -150,7 +150,7 @@ EVENTS: tuple[EventRow, ...] = (
 )  # fmt: skip
 
 STATES: tuple[WordRow, ...] = (
-    WordRow("SPINDLESTATE", "number", "3: the spindle turns clockwise; 4: counter-clockwise; 5: it stands", True, True),
+    WordRow("SPINDLESTATE", "number", "3: the spindle turns clockwise; 4: counter-clockwise; 5: stopped", True, True),
     WordRow("COOLANTSTATE", "number", "8: flood; 7: mist; 88: through the tool; 9: off", True, True),
     WordRow("NEXTTOOL", "number", "tool of the next tool change, 0 after the last one", True, True),
     WordRow("FIRSTMOTION", "number", "2: the first move or hole of the program, after a tool change or in another "

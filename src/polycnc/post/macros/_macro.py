@@ -101,10 +101,12 @@ class _Reader:
             self._if(number, line, control)
             return
         if not self.open:
-            raise Flaw(control.start(1), f"{word} stands after no IF", "to output the word, put it in quotes")
+            raise Flaw(
+                control.start(1), f"{word} has no IF before it", "to output the word, put it in quotes"
+            )
         if word in ("ELSE", "ENDIF") and line[control.end() :].strip(" \t"):
             raise Flaw(
-                control.end(), f"{word} stands alone in its line", "put what follows into the next line"
+                control.end(), f"{word} needs a line of its own", "put what follows into the next line"
             )
         if word == "ENDIF":
             self.open.pop()

@@ -83,7 +83,7 @@ class FiveAxis(StrictModel):
         if first.letter == second.letter:
             raise problem(f"both axes are {first.letter}", hint="give each a letter of its own")
         if first.on == "head" and second.on == "table":
-            raise problem("the head stands before the table", hint="name the axes from the part to the tool")
+            raise problem("the head comes before the table", hint="name the axes from the part to the tool")
         if _parallel(first.direction, second.direction) or _parallel(second.direction, (0.0, 0.0, 1.0)):
             raise problem(
                 "the second axis does not tilt the tool against the first",

@@ -110,7 +110,7 @@ def _behind_the_end(source: Source, line: int) -> ProgramError:
     return ProgramError(
         "a move after END, which ends the program",
         position=source.position(line),
-        hint="Take END out, or make a tool path of its own of what stands after it.",
+        hint="Take END out, or make a separate tool path of what follows it.",
     )
 
 

@@ -267,7 +267,7 @@ class Reading:
         elif self.axis_unsure is not None:
             raise self.axis_unsure.fail(
                 "MULTAX/OFF while the tool is tilted, and points without a tool axis after it",
-                "Write TLAXIS/0,0,1 after it if the tool stands upright there, or let the CAM system write the axis.",
+                "Write TLAXIS/0,0,1 after it if the tool is upright there, or let the CAM system write the axis.",
             )
         if self.scale != 1.0:
             x, y, z = x * self.scale, y * self.scale, z * self.scale

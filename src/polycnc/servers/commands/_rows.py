@@ -105,7 +105,7 @@ ROWS = (
         _share("spindle", "Spindle override."), _channel(all_of_them=True))),
     Command("set_switches", "Switch single block and its like; what is not given stays.", _set_switches, (
         _switch("single_block", "Stop after each block."), _switch("optional_stop", "Stop at M1."),
-        _switch("dry_run", "Move at the feed of a dry run."), _switch("machine_lock", "Let the axes stand."),
+        _switch("dry_run", "Move at the feed of a dry run."), _switch("machine_lock", "Keep the axes at rest."),
         Parameter("block_delete", MARKS, "Numbers of the skip marks that act.", 1, 9, required=False),
         _channel(all_of_them=True))),
     Command("set_breakpoints", "Stop before these lines of a program; others of it no longer.", _set_breakpoints,

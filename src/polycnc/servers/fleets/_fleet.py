@@ -129,7 +129,7 @@ class Fleet:
         status = await one.process.wait()
         raise FleetError(
             f"process {one.number} of the fleet has ended with status {status}",
-            hint="What it said stands above; the other processes are ended.",
+            hint="Its own messages are above; the other processes are ended.",
             status=status if status > 0 else 1,
         )
 

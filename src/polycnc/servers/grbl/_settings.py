@@ -86,7 +86,7 @@ def _travel(axis: AnyAxis) -> float:
 _READ: dict[int, Callable[[AnyAxis], float]] = {_RATE: _rate, _ACCELERATION: _acceleration, _TRAVEL: _travel}
 
 
-_OF_THE_FILE = {MAX_RPM: "the highest spindle speed stands", LASER: "the laser stands, as [spindle] laser,"}
+_OF_THE_FILE = {MAX_RPM: "the highest spindle speed is", LASER: "the laser is [spindle] laser"}
 
 
 class GrblSettings:

@@ -98,7 +98,7 @@ def _place(parts: list[str]) -> tuple[str, str, tuple[str, ...]]:
     raise AgentError(
         Code.INVALID_URI,
         f"there is nothing at /{'/'.join(parts)[:80]}",
-        hint="Ask for /probe, /current, /sample or /assets, of one device behind its name.",
+        hint="Ask for /probe, /current, /sample or /assets, of one device after its name.",
     )
 
 

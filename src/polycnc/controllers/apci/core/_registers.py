@@ -88,7 +88,7 @@ class Axst(Bits):
 class ErrorReg(Bits):
     """Errors of the operating system, table 15. The manual names nothing that clears them."""
 
-    errAxDef = 0, "an axis stands twice in the selection of a command"
+    errAxDef = 0, "an axis is named twice in the selection of a command"
     errTargetVel = 1, "the spooler ran empty at speed although ForbidTargetVel is set; the system was reset"
     errUnit = 2, "a unit that does not exist"
     errCenterPoint = 3, "a circle with an impossible centre or no radius"

@@ -49,9 +49,7 @@ class CallCompiler(ValueCompiler):
     def _write(self, node: Call) -> None:
         for argument in node.arguments:
             if argument.name:
-                raise self.error(
-                    argument.at, f"'{node.name}' takes plain values", "Leave out what stands with ':='."
-                )
+                raise self.error(argument.at, f"'{node.name}' takes plain values", "Leave out what has ':='.")
             if isinstance(argument.value, Text) and not argument.formats:
                 self.emit("writetext", argument.value.value)
                 continue

@@ -46,9 +46,7 @@ class StatementParser(ExpressionParser):
             try:
                 found += self._statement()
                 if not (self._is(";") or self._token.kind == END or self._token.word in stops):
-                    raise self._error(
-                        f"';' expected, not {self._token}", "A ';' stands between two statements."
-                    )
+                    raise self._error(f"';' expected, not {self._token}", "Write ';' between two statements.")
             except ProgramError as error:
                 before = self._token
                 self._recover(error, stops | {";", "end", "until"} | _STARTS)
@@ -158,7 +156,7 @@ class StatementParser(ExpressionParser):
                 labels = [self._label()]
                 while self._take(","):
                     labels.append(self._label())
-                self._expect(":", "A ':' stands between the values and the statement of a case.")
+                self._expect(":", "Write ':' between the values and the statement of a case.")
                 branches.append((tuple(labels), self._body()))
                 if self._token.word not in ends:
                     self._semicolon()

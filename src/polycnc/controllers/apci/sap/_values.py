@@ -225,7 +225,7 @@ class ValueCompiler(NameCompiler):
             self.call_routine(node, symbol)
             return symbol.routine.result
         if symbol is not None:
-            raise self.error(node.at, f"'{node.name}' is no function", "Indices stand in [ ].")
+            raise self.error(node.at, f"'{node.name}' is no function", "Write indices in [ ].")
         if name in FUNCTIONS:
             return self._function(node, name)
         if name.startswith("rdcb") and name[4:] in _commands.BUFFER_LETTERS:
@@ -265,9 +265,7 @@ class ValueCompiler(NameCompiler):
             raise self.error(node.at, what, "Add or remove arguments.")
         for argument in node.arguments:
             if argument.name or argument.formats:
-                raise self.error(
-                    argument.at, f"'{node.name}' takes plain values", "Leave out what stands with ':'."
-                )
+                raise self.error(argument.at, f"'{node.name}' takes plain values", "Leave out what has ':'.")
         return [argument.value for argument in node.arguments]
 
     # Constants

@@ -86,14 +86,14 @@ class Handle:
         if begun + len(lines[0]) > LONGEST_RECORD:
             raise Fault(_TOO_LONG, "the record that a semicolon has left open is part of it")
         if any(b"\n" in line for line in lines):
-            raise Fault("INVALID CHARACTER", "CHR$(13) begins a new record, CHR$(10) cannot stand in one")
+            raise Fault("INVALID CHARACTER", "CHR$(13) begins a new record, CHR$(10) cannot be part of one")
         self.file.write(len(data), b"\n".join(lines) + (b"" if stays_open else b"\n"))
         self._open_record = stays_open
         self.at = len(data)
 
     def _overwrite(self, line: bytes, length: int, *, stays_open: bool) -> None:
         if b"\n" in line:
-            raise Fault("INVALID CHARACTER", "CHR$(13) begins a new record, CHR$(10) cannot stand in one")
+            raise Fault("INVALID CHARACTER", "CHR$(13) begins a new record, CHR$(10) cannot be part of one")
         record = self.at // (length + 1) * (length + 1)
         offset = self.at - record
         part = line[: length - offset]

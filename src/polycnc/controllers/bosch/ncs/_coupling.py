@@ -130,7 +130,7 @@ class Coupling:
             Fault: An argument has the wrong type.
         """
         if arguments[-1] is OMITTED:
-            raise Fault("INVALID PARAMETER", "no comma stands before the closing bracket")
+            raise Fault("INVALID PARAMETER", "there is no comma before the closing bracket")
         if self._under_way is not None and self._under_way[0] == arguments:
             work = self._under_way[1]
         else:

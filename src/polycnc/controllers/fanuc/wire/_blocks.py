@@ -115,5 +115,5 @@ def _blocks(body: bytes, least: int) -> list[bytes]:
         blocks.append(body[at : at + size])
         at += size
     if at != len(body):
-        raise ProtocolError(f"{len(body) - at} bytes stand after the last of {count} blocks")
+        raise ProtocolError(f"{len(body) - at} bytes follow the last of {count} blocks")
     return blocks
