@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import asyncio
 import os
+import random
 from collections.abc import Mapping
 from dataclasses import replace
+from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
@@ -26,6 +28,7 @@ from polycnc.servers.opcua._machine_tool import PRODUCTION_STATE
 from polycnc.servers.opcua._model import UNITS, Type
 from polycnc.servers.opcua._moment import At, Fixed
 from polycnc.servers.opcua._node_sets import IN_ORDER, find_node_sets
+from polycnc.servers.opcua._publish import _plain
 from polycnc.servers.opcua._standard import bounded_server
 from polycnc.servers.plant import FACTS, see
 
@@ -107,11 +110,12 @@ def _run(visit: Any) -> Any:
     return asyncio.run(visit)
 
 
+async def nothing(*_: object) -> None:
+    return
+
+
 def test_monitored_items_are_bounded_over_all_subscriptions(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(_bounds, "MOST_ITEMS", 7)
-
-    async def nothing() -> None:
-        return
 
     async def visit() -> list[int]:
         server = bounded_server(Users(None))
@@ -141,6 +145,49 @@ def test_monitored_items_are_bounded_over_all_subscriptions(monkeypatch: pytest.
 
     full = ua.StatusCodes.BadTooManyMonitoredItems
     assert _run(visit()) == [0] * 7 + [full] * 2
+
+
+@pytest.mark.parametrize("size", [1, 3, 100])
+def test_what_changes_is_notified_in_order_up_to_the_size_of_the_queue(size: int) -> None:
+    draws = random.Random(size)
+    values = [draws.choice([None, 0.25, 0.5, 0.5, 0.75]) for _ in range(60)]
+
+    async def visit() -> list[Any]:
+        server = bounded_server(Users(None))
+        node = ua.NodeId("x", 1)
+        data = server.aspace[node] = NodeData(node)
+        data.attributes[ua.AttributeIds.Value] = AttributeValue(_plain(9.0, ua.VariantType.Double, None))
+        service = _bounds.Subscriptions(server, nothing, lambda: None)
+        told: list[Any] = []
+
+        async def published(result: ua.PublishResult) -> None:
+            told.extend(
+                item for part in result.NotificationMessage.NotificationData for item in part.MonitoredItems
+            )
+
+        made = await service.create_subscription(ua.CreateSubscriptionParameters(), published, ua.NodeId(3))
+        item = ua.MonitoredItemCreateRequest(
+            ItemToMonitor=ua.ReadValueId(NodeId=node, AttributeId=ua.AttributeIds.Value),
+            MonitoringMode=ua.MonitoringMode.Reporting,
+            RequestedParameters=ua.MonitoringParameters(ClientHandle=7, QueueSize=size),
+        )
+        await service.create_monitored_items(
+            ua.CreateMonitoredItemsParameters(SubscriptionId=made.SubscriptionId, ItemsToCreate=[item])
+        )
+        subscription = service.subscriptions[made.SubscriptionId]
+        await subscription.publish_results()
+        for value in values:
+            await server.aspace.write_attribute_value(
+                node, ua.AttributeIds.Value, _plain(value, ua.VariantType.Double, None)
+            )
+        await subscription.publish_results()
+        await service.delete_subscriptions([made.SubscriptionId])
+        server.method_service.stop()
+        assert {each.ClientHandle for each in told} == {7}
+        return [each.Value.Value.Value for each in told]
+
+    changes = [value for before, value in pairwise([9.0, *values]) if value != before]
+    assert _run(visit()) == [9.0, *changes[-size:]]
 
 
 def test_a_certificate_is_kept_and_used_again(tmp_path: Path) -> None:

@@ -10,6 +10,7 @@ from asyncua import ua
 from asyncua.common.utils import Buffer, NotEnoughData
 from asyncua.server.binary_server_asyncio import BinaryServer, OPCUAProtocol
 from asyncua.server.internal_server import InternalServer
+from asyncua.server.monitored_item_service import MonitoredItemService
 from asyncua.server.subscription_service import SubscriptionService
 from asyncua.ua.ua_binary import header_from_binary
 
@@ -76,6 +77,25 @@ class Listener(BinaryServer):
         )
 
 
+class _Items(MonitoredItemService):
+    """The monitored items of a subscription; a notification is made with its value, not with another one first."""
+
+    async def datachange_callback(
+        self, handle: int, value: ua.DataValue, error: ua.StatusCode | None = None
+    ) -> None:
+        """Take a value that was written, and queue it if it is another one."""
+        item = self._monitored_items[self._monitored_datachange[handle]]
+        if error or item.filter:
+            await super().datachange_callback(handle, value, error)
+        elif item.mode != ua.MonitoringMode.Disabled:
+            item.mvalue.set_current_datavalue(value)
+            if self._is_data_changed(item.mvalue, ua.DataChangeTrigger.StatusValue):
+                notification = ua.MonitoredItemNotification(item.client_handle, value)
+                await self.isub.enqueue_datachange_event(
+                    item.monitored_item_id, notification, item.queue_size
+                )
+
+
 class Subscriptions(SubscriptionService):
     """The subscriptions of a server; `before` is done before one is made, `made` after."""
 
@@ -100,6 +120,8 @@ class Subscriptions(SubscriptionService):
         )
         await self._before()
         made = await super().create_subscription(params, callback, session_id, request_callback)
+        subscription = self.subscriptions[made.SubscriptionId]
+        subscription.monitored_item_srv = _Items(subscription, self.aspace)
         self._made()
         return made
 

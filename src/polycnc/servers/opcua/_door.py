@@ -16,7 +16,14 @@ from asyncua.server.internal_session import InternalSession
 
 from polycnc import __version__
 from polycnc.errors import PolycncError, UsageError
-from polycnc.servers.machines import LOOPBACK, ServedMachine, Treatment, Wanted, peers_of
+from polycnc.servers.machines import (
+    LOOPBACK,
+    ServedMachine,
+    Treatment,
+    Wanted,
+    peers_of,
+    treatment_of,
+)
 from polycnc.servers.opcua import _cnc as cnc
 from polycnc.servers.opcua import _machine_tool as tool
 from polycnc.servers.opcua._alarms import AlarmEvents
@@ -212,12 +219,7 @@ class OpcuaDoor:
                 await publisher.refresh()
 
     async def _treat(self) -> Treatment:
-        """Tell the scenarios of all machines of a request, and join what they want."""
-        wanted = []
-        for each in self._machines:
-            with contextlib.suppress(PolycncError):
-                wanted.append(await each.ask(lambda each=each: each.treat("opcua")))  # type: ignore[misc]
-        return Treatment(any(each.drop for each in wanted), sum(each.delay_s for each in wanted))
+        return treatment_of(self._machines, "opcua")
 
     async def _before_read(self, event: Any, _: Any) -> None:
         if event.is_external:

@@ -22,6 +22,14 @@ from polycnc.servers.plant import Seen, see
 
 _NONE = object()
 _VALUE = ua.AttributeIds.Value
+_GOOD = ua.StatusCode()
+
+
+class _Unchanging(ua.DataValue):
+    """A value that nothing changes: monitored items keep it as it is instead of copying all its parts."""
+
+    def __deepcopy__(self, memo: dict[int, Any]) -> _Unchanging:
+        return self
 
 
 @dataclass(slots=True)
@@ -126,5 +134,5 @@ def _data_value(member: Member, variant: ua.VariantType, value: Any, time: Any) 
 
 def _plain(value: Any, variant: ua.VariantType, time: Any) -> ua.DataValue:
     if value is None:
-        return ua.DataValue(ua.Variant(None), NOT_SUPPORTED, SourceTimestamp=time)
-    return ua.DataValue(ua.Variant(value, variant), SourceTimestamp=time)
+        return _Unchanging(ua.Variant(None), NOT_SUPPORTED, SourceTimestamp=time)
+    return _Unchanging(ua.Variant(value, variant), _GOOD, SourceTimestamp=time)
