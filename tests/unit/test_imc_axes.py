@@ -120,6 +120,42 @@ SCENES: dict[str, tuple[str, Steps]] = {
             (20, {"capture": FLAG, "clrencs": FLAG}),
         ],
     ),
+    "ends": (
+        "",
+        [
+            (3, {"homepos": 2_147_000_003, "sethome": FLAG}),
+            (25, {"vellim": 32767.5, "accellim": 32767.5, "mcsmaxvel": 31000.3, "mcsaccel": 12000.7, "mcsdecel": 9000.1,
+                  "mcsdist": -1_900_000_001, "mcsgo": FLAG, "breakp": 2_146_900_001, "clear": 0}),
+            (20, {"pcsmaxvel": 30000.7, "pcsaccel": 9000.3, "pcsdecel": 8000.1, "pcsdist": 1_700_000_003,
+                  "pcsgo": FLAG, "shiftmaster": FLAG, "capture": FLAG}),
+            (12, {"pcstgvel": 0, "mcstgvel": -0.3, "aioctr": 0xC000, "psoftlim": 2_147_000_000, "nsoftlim": 16_777_219,
+                  "stopfilt": 8, "exitfilt": 0}),
+            (12, {"mcstgvel": 20000.1, "pcstgpos": -1_000_000_001, "pcsgo": FLAG}),
+            (12, {"mcstgpos": 16_777_217, "mcsgo": FLAG, "mcsmaxvel": 12.3, "haltstep": 1, "haltmode": FLAG}),
+            (8, {"haltstep": 0, "ciraxis": FLAG, "cirpos": 2_100_000_001, "biciraxis": FLAG}),
+            (8, {"homepos": -2_147_000_001, "sethome": FLAG, "nsoftlim": -2_147_000_003}),
+        ],
+    ),
+    "far gears": (
+        "",
+        [
+            (20, {"vellim": 32767, "accellim": 32767, "mcsaccel": 2000.3, "mcsdecel": 3000.1, "master": 1,
+                  "gearsrc": address("curvel"), "gearratio": -4321.1, "engear": FLAG}),
+            (10, {"gearoutmod": FLAG, "gearoutvel": -12345.3, "engear": 0}),
+            (15, {"syntype": FLAG, "slaveabs": FLAG, "synsrc": address("curpos"), "synaxis": 1,
+                  "synsrcvar": 33_000_001, "slavedist": -1_800_000_001, "enasyn": FLAG, "startsyn": FLAG}),
+            (10, {"enasyn": 0, "syntype": 0, "synsrcvar": 7, "mcstgvel": 20000.3}),
+            (12, {"enasyn": FLAG, "startsyn": FLAG}),
+            (12, {"mcstgvel": 0, "encsfactor": 50000.3, "spin_handwheel": -7, "encpfactor": 40000.3,
+                  "gearsrc": address("mcsvel"), "gearratio": 300.3}),
+            (12, {"engear": FLAG, "poserrlim": 60001, "settlewin": 50003, "trackwin": 40001, "smooth": 3}),
+        ],
+    ),
+    "far home": (
+        "origin = [500, 560]\n",
+        [(120, {"highvel": 23.3, "lowvel": 1.7, "homeseq": 0x14 | 0x20 | 2, "homepos": 1_000_000_019,
+                "homestpos": 1_000_000_351, "mcsaccel": 2.3, "mcsdecel": 3.1, "gohome": FLAG})],
+    ),
 }  # fmt: skip
 # What the whole card does: what is written to it, or pushed into a queue, before so many cycles.
 CARD: dict[str, list[tuple[int, list[tuple[Any, ...]]]]] = {
