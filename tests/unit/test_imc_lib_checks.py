@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
+from itertools import chain
 from typing import Any
 
 import pytest
@@ -88,6 +89,18 @@ PATHS: dict[str, tuple[Any, ...]] = {
 }
 
 
+def functions(*tables: Iterable[str]) -> list[str]:
+    """Return the rows of functions; the manual describes some under another name."""
+    return [f"imc.{MANUAL_NAMES.get(name, name)}" for name in sorted(set(chain(*tables)))]
+
+
+MANUAL_NAMES = {
+    "IMC_MoveInTime": "IMC_MoveTP", "IMC_MoveInDist": "IMC_MovePP", "IMC_TgvelInTime": "IMC_MoveTV",
+    "IMC_TgvelInDist": "IMC_MovePV", "IMC_PutContourData": "IMC_AddContourData",
+}  # fmt: skip
+
+
+@pytest.mark.covers(*functions(SENDERS, WAITERS, PATHS))
 @pytest.mark.covers(
     "imc.fifo.SEL_IFIFO",
     "imc.fifo.SEL_QFIFO",
@@ -110,7 +123,7 @@ def test_queues_that_take_an_instruction(
     assert len(SENDERS) + len(WAITERS) + len(PATHS) == 40
 
 
-@pytest.mark.covers("imc.IMC_ClearFIFO")
+@pytest.mark.covers("imc.IMC_ClearFIFO", "imc.IMC_AddContourData", "imc.concept.cfifo")
 def test_contour_points_go_to_queues_of_points_only(card: ToldCard, handle: lib.IMC_HANDLE) -> None:
     for fifo in (-1, I, Q, 5):
         assert lib.IMC_PutContourData(handle, [1, 2], 2, fifo) == lib.IMC_INVALID_FIFO
@@ -123,7 +136,7 @@ def test_contour_points_go_to_queues_of_points_only(card: ToldCard, handle: lib.
     assert card.cleared == list(range(5))
 
 
-@pytest.mark.covers("imc.status.IMC_FIFO_FULL")
+@pytest.mark.covers("imc.status.IMC_FIFO_FULL", *functions(SENDERS, WAITERS, PATHS))
 def test_a_full_queue_refuses_and_nothing_is_sent_again(card: ToldCard, handle: lib.IMC_HANDLE) -> None:
     card.full = True
     for name, arguments in {**SENDERS, **WAITERS, **PATHS}.items():
@@ -138,7 +151,7 @@ AXIS_LAST = sorted(set(SENDERS) - {"IMC_SetMulParam", "IMC_InstallEvent"})
 
 @pytest.mark.covers("imc.status.IMC_INVALID_AXIS")
 @pytest.mark.covers("imc.IMC_GetCapData", "imc.IMC_GetParamBit")
-@pytest.mark.covers("imc.const.AXISNUM")
+@pytest.mark.covers("imc.const.AXISNUM", *functions(AXIS_LAST))
 def test_axes_that_the_card_does_not_have(card: ToldCard, handle: lib.IMC_HANDLE) -> None:
     for name in AXIS_LAST:
         for axis in (-1, 4):
@@ -211,63 +224,66 @@ def test_parameters_that_cannot_be_written(card: ToldCard, handle: lib.IMC_HANDL
     assert card.told == []
 
 
+bit, out = lib.IMC_INVALID_PARAM, lib.IMC_OUT_OF_RANGE
+event = lib.EventInfo.of(lib.CMD_SET16, src2=1, dest=(307, 0))
+nan = float("nan")
+REFUSED: list[tuple[lib.IMC_STATUS, str, tuple[Any, ...]]] = [
+    (bit, "IMC_SetParamBit", (562, 16, 1, 0, I)),
+    (bit, "IMC_SetParamBit", (562, -1, 1, 0, I)),
+    (out, "IMC_SetParamBit", (562, 0, 2, 0, I)),
+    (bit, "IMC_TurnParamBit", (562, 16, 0, I)),
+    (bit, "IMC_WaitParamBit", (562, 16, 1, 0, 0, Q)),
+    (out, "IMC_WaitParamBit", (562, 0, -1, 0, 0, Q)),
+    (out, "IMC_SetParam16", (12, 1 << 16, 0, I)),
+    (out, "IMC_SetParam32", (12, -(1 << 31) - 1, 0, I)),
+    (out, "IMC_SetParam48", (175, 1 << 48, 0, I)),
+    (out, "IMC_SetMulParam", (many((12, 0, 1)), 0, I)),
+    (out, "IMC_SetMulParam", (many((12, 0, 1)), 2, I)),
+    (out, "IMC_SetMulParam", (many((12, 0, 4)), 1, I)),
+    (out, "IMC_SetMulParam", (many((12, 0, 0)), 1, I)),
+    (lib.IMC_INVALID_AXIS, "IMC_SetMulParam", (many((12, 0, 1), (12, 4, 1)), 2, I)),
+    (bit, "IMC_SetMulParam", (many((12, 0, 1), (9, 0, 1)), 2, I)),
+    (bit, "IMC_SetMulParam", (None, 1, I)),
+    (out, "IMC_GetMulParam", (many((12, 0, 1)), 0)),
+    (out, "IMC_GetMulParam", (many(*[(12, 0, 1)] * 33), 33)),
+    (out, "IMC_InstallEvent", ([event] * 40, 0, I)),
+    (out, "IMC_InstallEvent", ([event] * 40, 32, I)),
+    (out, "IMC_InstallEvent", ([event], 2, I)),
+    (out, "IMC_AddLineN", (line(0), P1)),
+    (out, "IMC_AddLineN", (line(5), P1)),
+    (out, "IMC_AddLineNWithVel", (fast(17), P1)),
+    (out, "IMC_AddArcLine", (line(1), P1)),
+    (out, "IMC_AddArc", (0, 0, 1, 1, 2, P1)),
+    (out, "IMC_AddSpiral", (0, 0, 0, 1, 1, -1, P1)),
+    (bit, "IMC_AddLineN", (None, P1)),
+    (out, "IMC_PutContourData", ([0] * 127, 127, C)),
+    (out, "IMC_PutContourData", ([0], 0, C)),
+    (out, "IMC_PutContourData", ([0], 2, C)),
+    (out, "IMC_PutContourData", ([32768], 1, C)),
+    (out, "IMC_GearFree", (32768.0, 1, 0, 0, I)),
+    (out, "IMC_GearFree", (-32768.1, 1, 0, 0, I)),
+    (out, "IMC_GearFree", (nan, 1, 0, 0, I)),
+    (out, "IMC_GearFree", (1.0, 1, 5, 0, I)),
+    (out, "IMC_GearInDist", (1.0, 1, 0, 1, 5, 1000, 0, I)),
+    (out, "IMC_GearInDist", (1e300, 1, 0, 1, 2, 1000, 0, I)),
+    (out, "IMC_GearInDist", (-1e300, 1, 0, 1, 2, 1000, 0, I)),
+    (out, "IMC_GearInDist", (10**400, 1, 0, 1, 2, 1000, 0, I)),
+    (out, "IMC_GearInDist", (1.0, 1, 0, 1, 0, 0, 0, I)),
+    (out, "IMC_GearInTime", (1.0, 1, -1, 1000, 0, I)),
+    (out, "IMC_HandWheel", (float("inf"), 1, 0, I)),
+    (out, "IMC_MoveInTime", (0, 100, 0, I)),
+    (out, "IMC_MoveInDist", (-5, 1, 100, 0, I)),
+    (out, "IMC_TgvelInTime", (0, 65536, 0, I)),
+    (out, "IMC_TgvelInDist", (0, 1, 65536, 0, I)),
+]
+
+
+@pytest.mark.covers(*functions(name for _, name, _ in REFUSED))
 @pytest.mark.covers("imc.status.IMC_OUT_OF_RANGE")
 @pytest.mark.covers("imc.IMC_GetCapData")
 @pytest.mark.covers("imc.const.limits")
 def test_numbers_out_of_range(card: ToldCard, handle: lib.IMC_HANDLE) -> None:
-    bit, out = lib.IMC_INVALID_PARAM, lib.IMC_OUT_OF_RANGE
-    event = lib.EventInfo.of(lib.CMD_SET16, src2=1, dest=(307, 0))
-    nan = float("nan")
-    refused: list[tuple[lib.IMC_STATUS, str, tuple[Any, ...]]] = [
-        (bit, "IMC_SetParamBit", (562, 16, 1, 0, I)),
-        (bit, "IMC_SetParamBit", (562, -1, 1, 0, I)),
-        (out, "IMC_SetParamBit", (562, 0, 2, 0, I)),
-        (bit, "IMC_TurnParamBit", (562, 16, 0, I)),
-        (bit, "IMC_WaitParamBit", (562, 16, 1, 0, 0, Q)),
-        (out, "IMC_WaitParamBit", (562, 0, -1, 0, 0, Q)),
-        (out, "IMC_SetParam16", (12, 1 << 16, 0, I)),
-        (out, "IMC_SetParam32", (12, -(1 << 31) - 1, 0, I)),
-        (out, "IMC_SetParam48", (175, 1 << 48, 0, I)),
-        (out, "IMC_SetMulParam", (many((12, 0, 1)), 0, I)),
-        (out, "IMC_SetMulParam", (many((12, 0, 1)), 2, I)),
-        (out, "IMC_SetMulParam", (many((12, 0, 4)), 1, I)),
-        (out, "IMC_SetMulParam", (many((12, 0, 0)), 1, I)),
-        (lib.IMC_INVALID_AXIS, "IMC_SetMulParam", (many((12, 0, 1), (12, 4, 1)), 2, I)),
-        (bit, "IMC_SetMulParam", (many((12, 0, 1), (9, 0, 1)), 2, I)),
-        (bit, "IMC_SetMulParam", (None, 1, I)),
-        (out, "IMC_GetMulParam", (many((12, 0, 1)), 0)),
-        (out, "IMC_GetMulParam", (many(*[(12, 0, 1)] * 33), 33)),
-        (out, "IMC_InstallEvent", ([event] * 40, 0, I)),
-        (out, "IMC_InstallEvent", ([event] * 40, 32, I)),
-        (out, "IMC_InstallEvent", ([event], 2, I)),
-        (out, "IMC_AddLineN", (line(0), P1)),
-        (out, "IMC_AddLineN", (line(5), P1)),
-        (out, "IMC_AddLineNWithVel", (fast(17), P1)),
-        (out, "IMC_AddArcLine", (line(1), P1)),
-        (out, "IMC_AddArc", (0, 0, 1, 1, 2, P1)),
-        (out, "IMC_AddSpiral", (0, 0, 0, 1, 1, -1, P1)),
-        (bit, "IMC_AddLineN", (None, P1)),
-        (out, "IMC_PutContourData", ([0] * 127, 127, C)),
-        (out, "IMC_PutContourData", ([0], 0, C)),
-        (out, "IMC_PutContourData", ([0], 2, C)),
-        (out, "IMC_PutContourData", ([32768], 1, C)),
-        (out, "IMC_GearFree", (32768.0, 1, 0, 0, I)),
-        (out, "IMC_GearFree", (-32768.1, 1, 0, 0, I)),
-        (out, "IMC_GearFree", (nan, 1, 0, 0, I)),
-        (out, "IMC_GearFree", (1.0, 1, 5, 0, I)),
-        (out, "IMC_GearInDist", (1.0, 1, 0, 1, 5, 1000, 0, I)),
-        (out, "IMC_GearInDist", (1e300, 1, 0, 1, 2, 1000, 0, I)),
-        (out, "IMC_GearInDist", (-1e300, 1, 0, 1, 2, 1000, 0, I)),
-        (out, "IMC_GearInDist", (10**400, 1, 0, 1, 2, 1000, 0, I)),
-        (out, "IMC_GearInDist", (1.0, 1, 0, 1, 0, 0, 0, I)),
-        (out, "IMC_GearInTime", (1.0, 1, -1, 1000, 0, I)),
-        (out, "IMC_HandWheel", (float("inf"), 1, 0, I)),
-        (out, "IMC_MoveInTime", (0, 100, 0, I)),
-        (out, "IMC_MoveInDist", (-5, 1, 100, 0, I)),
-        (out, "IMC_TgvelInTime", (0, 65536, 0, I)),
-        (out, "IMC_TgvelInDist", (0, 1, 65536, 0, I)),
-    ]
-    for status, name, arguments in refused:
+    for status, name, arguments in REFUSED:
         assert getattr(lib, name)(handle, *arguments) == status, (name, arguments)
     for rdnum in (-1, 121):
         assert lib.IMC_GetCapData(handle, rdnum, 0) == (out, [], 0, 0)
