@@ -134,6 +134,8 @@ SCENES: dict[str, tuple[str, Steps]] = {
             (12, {"mcstgpos": 16_777_217, "mcsgo": FLAG, "mcsmaxvel": 12.3, "haltstep": 1, "haltmode": FLAG}),
             (8, {"haltstep": 0, "ciraxis": FLAG, "cirpos": 2_100_000_001, "biciraxis": FLAG}),
             (8, {"homepos": -2_147_000_001, "sethome": FLAG, "nsoftlim": -2_147_000_003}),
+            (6, {"mcsvel": 100.3, "pcsvel": -230.7, "ciraxis": 0}),
+            (6, {"run": 0}),
         ],
     ),
     "far gears": (
@@ -148,7 +150,9 @@ SCENES: dict[str, tuple[str, Steps]] = {
             (12, {"enasyn": FLAG, "startsyn": FLAG}),
             (12, {"mcstgvel": 0, "encsfactor": 50000.3, "spin_handwheel": -7, "encpfactor": 40000.3,
                   "gearsrc": address("mcsvel"), "gearratio": 300.3}),
-            (12, {"engear": FLAG, "poserrlim": 60001, "settlewin": 50003, "trackwin": 40001, "smooth": 3}),
+            (12, {"engear": FLAG, "poserrlim": 60001, "settlewin": 50003, "trackwin": 40001, "smooth": 3,
+                  "indexNum": 60003}),
+            (8, {"encsfactor": 1.3, "spin_handwheel": 7}),
         ],
     ),
     "far home": (
@@ -195,6 +199,9 @@ CARD: dict[str, list[tuple[int, list[tuple[Any, ...]]]]] = {
         ),
         (12, [("hpause", 1)]),
         (12, [("hpause", 0), (CFIFO, 5, 6, 7)]),
+        (5, [(CFIFO, 401, -302, 203, 10, 20, 30)]),
+        (6, [("startgroup", 0)]),
+        (3, [("startgroup", FLAG)]),
         (10, [("emstop", 0x0010)]),
     ],
     "queue": [

@@ -277,6 +277,24 @@ def test_conditions_at_the_ends_of_the_numbers() -> None:
             assert edges == wanted & ~sum(1 << k for k, name in enumerate(NAMES) if name in held.split())
 
 
+@pytest.mark.covers("imc.concept.event_flags", "imc.etype.IMC_Allways", "imc.event.CMD_CMP32i")
+def test_a_conditional_event_does_not_change_what_the_next_one_tests() -> None:
+    card = ready_card(number_of_axes=1)
+    install(
+        card,
+        event("CMP32i", first=A32, constant=10),
+        event("CMP32i", "IF_Great", first=A32, constant=5000),  # less
+        event("ADD32i", "IF_Great", first=B32, constant=-60000, target=B32),  # negative
+        event("AND16i", "IF_Great", first=A16, constant=0, target=A16),  # 0
+        event("ADD32i", "IF_Great", first=R32, constant=3, target=R32),
+        event("ADD32i", "IF_Little", first=R32, constant=1000, target=R32),
+        event("ADD32i", "IF_Carry", first=R32, constant=20000, target=R32),
+    )
+    set_now(card, ("user32b1", 700))
+    card.advance(3)
+    assert card.read("user32b0") == 9
+
+
 @pytest.mark.covers("imc.concept.event_space")
 def test_several_conditional_events_test_the_same_unconditional_one() -> None:
     card = ready_card(number_of_axes=1)
@@ -328,7 +346,9 @@ def test_an_event_stops_an_axis_and_sets_its_origin() -> None:
     assert card.kernel.servo.actual[0] > 500
 
 
-@pytest.mark.covers("imc.param.events")
+@pytest.mark.covers(
+    "imc.param.events", "imc.etype.IMC_Allways", "imc.event.CMD_ADD32i", "imc.concept.event_space"
+)
 def test_the_space_holds_128_events_and_0_removes_them() -> None:
     card = ready_card()
     one = event("ADD32i", first=R32, constant=1, target=R32)

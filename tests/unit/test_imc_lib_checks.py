@@ -123,7 +123,8 @@ def test_queues_that_take_an_instruction(
     assert len(SENDERS) + len(WAITERS) + len(PATHS) == 40
 
 
-@pytest.mark.covers("imc.IMC_ClearFIFO", "imc.IMC_AddContourData", "imc.concept.cfifo")
+@pytest.mark.covers("imc.IMC_ClearFIFO", "imc.IMC_AddContourData", "imc.concept.cfifo", "imc.enum.FIFO_SEL")
+@pytest.mark.covers(*(f"imc.fifo.SEL_{name}" for name in ("IFIFO", "QFIFO", "PFIFO1", "PFIFO2", "CFIFO")))
 def test_contour_points_go_to_queues_of_points_only(card: ToldCard, handle: lib.IMC_HANDLE) -> None:
     for fifo in (-1, I, Q, 5):
         assert lib.IMC_PutContourData(handle, [1, 2], 2, fifo) == lib.IMC_INVALID_FIFO
@@ -291,6 +292,10 @@ def test_numbers_out_of_range(card: ToldCard, handle: lib.IMC_HANDLE) -> None:
 
 
 @pytest.mark.covers("imc.IMC_AddLineN", "imc.IMC_GetMulParam", "imc.IMC_SetParam16", "imc.IMC_SetParamBit")
+@pytest.mark.covers(
+    "imc.const.limits", "imc.IMC_GetCapData", "imc.IMC_AddContourData", "imc.IMC_InstallEvent"
+)
+@pytest.mark.covers("imc.type.IMCFLOAT", "imc.IMC_GearFree")
 def test_the_largest_that_is_taken(handle: lib.IMC_HANDLE) -> None:
     event = lib.EventInfo.of(lib.CMD_SET16, src2=1, dest=(307, 0))
     assert lib.IMC_GetMulParam(handle, many(*[(12, 0, 3)] * 32), 32) == lib.IMC_OK

@@ -36,6 +36,7 @@ STATUSES = [
 ]
 
 
+@pytest.mark.covers("imc.enum.IMC_STATUS")
 def test_statuses_have_the_numbers_of_their_order_and_a_text() -> None:
     for value, name in enumerate(STATUSES):
         status = getattr(imclib, name)

@@ -50,13 +50,13 @@ CASES: dict[str, tuple[tuple[Any, ...], dict[str, int]]] = {
     "IMC_MoveSuperimposed": ((-1530000007,), {"pcsdist": -1530000007, "pcsgo": -1}),
     "IMC_Phasing": ((1730000009,), {"pcsdist": 1730000009, "pcsgo": -1}),
     "IMC_MoveVelocity": ((-30000 * 65536 - 13,), {"mcstgvel": -1966080013}),
-    "IMC_HomeSwitch1": ((0, 1, 0), {"homeseq": 0x14, "gohome": -1}),
-    "IMC_HomeSwitch2": ((1, 0, 1), {"homeseq": 0x27, "gohome": -1}),
-    "IMC_HomeSwitch3": ((1, 0, 1), {"homeseq": 0x47, "gohome": -1}),
-    "IMC_HomeSwitchIndex1": ((1, 1, 0), {"homeseq": 0x1D, "gohome": -1}),
+    "IMC_HomeSwitch1": ((0, 7, 0), {"homeseq": 0x14, "gohome": -1}),
+    "IMC_HomeSwitch2": ((1, 0, -3), {"homeseq": 0x27, "gohome": -1}),
+    "IMC_HomeSwitch3": ((1, 0, 256), {"homeseq": 0x47, "gohome": -1}),
+    "IMC_HomeSwitchIndex1": ((1, -2, 0), {"homeseq": 0x1D, "gohome": -1}),
     "IMC_HomeSwitchIndex2": ((0, 0, 1), {"homeseq": 0x2E, "gohome": -1}),
-    "IMC_HomeSwitchIndex3": ((1, 1, 1), {"homeseq": 0x5F, "gohome": -1}),
-    "IMC_HomeIndex": ((1, 1), {"homeseq": 0x0B, "gohome": -1}),
+    "IMC_HomeSwitchIndex3": ((1, 256, 2), {"homeseq": 0x5F, "gohome": -1}),
+    "IMC_HomeIndex": ((1, 32767), {"homeseq": 0x0B, "gohome": -1}),
     "IMC_GearFree": (
         (0.5, 1, 2),
         {"master": 1, "gearsrc": 4, "gearratio": 1 << 31, "syntype": 0, "enasyn": 0, "engear": -1},
@@ -138,6 +138,8 @@ ROWS = {  # functions that the manual describes under another name
 @pytest.mark.parametrize(
     "name", [pytest.param(each, marks=pytest.mark.covers(f"imc.{ROWS.get(each, each)}")) for each in CASES]
 )
+@pytest.mark.covers("imc.const.RiseEdge", "imc.const.stop", "imc.const.direction", "imc.param.homeseq")
+@pytest.mark.covers("imc.type.IMC32", "imc.type.IMCFLOAT")
 def test_functions_of_motion_are_one_instruction(card: ToldCard, handle: lib.IMC_HANDLE, name: str) -> None:
     arguments, writes = CASES[name]
     assert getattr(lib, name)(handle, *arguments, 2, lib.SEL_QFIFO) == lib.IMC_OK

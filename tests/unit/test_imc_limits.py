@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import pytest
 
+from polycnc.controllers.imc.core._parameters import address
 from support.imc_card import (
     FLAG,
     IFIFO,
@@ -259,3 +260,22 @@ def test_a_card_that_is_switched_on_at_its_switches_shows_them() -> None:
     )
     card.advance(1)
     assert [card.read("aio", i) for i in range(3)] == [0, 1 + 4, 2 + 4]
+
+
+@pytest.mark.covers("imc.param.mcsslope", "imc.param.pcsslope")
+def test_slope_is_clear_at_rest_however_the_motion_has_ended() -> None:
+    card = ready_card()
+    set_now(card, ("mcstgvel", 2, 0), ("pcstgvel", -1, 0), ("mcsaccel", 0.5, 1), ("stopmode", 0x40, 1))
+    set_now(
+        card, ("mcstgvel", 5, 1), ("syntype", FLAG, 2), ("synsrc", address("ticks"), 2), ("synsrcvar", 6, 2)
+    )
+    set_now(card, ("slavedist", 9, 2), ("enasyn", FLAG, 2), ("startsyn", FLAG, 2))
+    set_now(card, ("group_x", 3), ("groupnum", 1), ("groupsmooth", 2), ("startgroup", FLAG))
+    assert card.push_points([7, -3])
+    card.advance(3)
+    shown = [(card.read("mcsslope", i), card.read("pcsslope", i)) for i in range(4)]
+    assert shown == [(0, 0), (FLAG, 0), (FLAG, 0), (FLAG, 0)]
+    set_now(card, ("run", 0, 0), ("error", 0x40, 1))  # at once
+    card.advance(6)
+    assert [card.read("curvel", i) for i in range(4)] == [0] * 4
+    assert [card.read(name, i) for name in ("mcsslope", "pcsslope") for i in range(4)] == [0] * 8

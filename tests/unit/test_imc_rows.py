@@ -20,7 +20,7 @@ from support.imc_card import IFIFO
 AXES = 4
 BITS = {"S16": 16, "U16": 16, "F16": 16, "R16": 16, "S32": 32, "U32": 32, "S16.16": 32, "U16.16": 32}
 BITS |= {"S16.32": 48, "U16.32": 48}
-PATTERNS = (0x5A3C_7E1F_6B2D, -0x5A3C_7E1F_6B2D)  # each is cut to the width of a word
+PATTERNS = (0x5A3C_7E1F_6B2D, -0x5A3C_7E1F_6B2D, 0)  # each is cut to the width of a word
 
 # What belongs to the card: the number that was written last stays for every axis.
 SHARED = {
@@ -62,8 +62,11 @@ def expected(name: str, words: int, written: list[int]) -> list[int]:
     """Return what a parameter shows for each axis a cycle after something was written to it for each."""
     if name in FIXED or name in NOTHING:
         return [FIXED.get(name, 0)] * AXES
-    if name in SHARED or name in COUNTING:
-        return [signed(written[-1] + COUNTING.get(name, 0), words)] * AXES
+    if name in COUNTING:  # without a sign, and a delay ends at 0
+        left = written[-1] % (1 << 16 * words) + COUNTING[name]
+        return [signed(max(left, 0), words)] * AXES
+    if name in SHARED:
+        return [written[-1]] * AXES
     if name == "aio":  # terminals 0 to 2 are as they are
         return [value & ~7 for value in written]
     return written

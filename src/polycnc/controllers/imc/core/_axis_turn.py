@@ -113,6 +113,8 @@ def axis_turn(s: CardState, i: int) -> None:
         and axis["lag"] == 0
         and axis["recent"] == 0
         and get32(m, i, addr.CURVEL) == 0
+        and m[i, addr.SLOPE] == 0
+        and m[i, addr.PCS + addr.SLOPE] == 0
         and get_u16(m, i, addr.SMOOTH) == axis["smooth"]
     ):
         return
