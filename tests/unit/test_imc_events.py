@@ -330,6 +330,9 @@ def test_an_event_sets_a_flag_once_when_a_position_is_reached_or_in_every_cycle(
         assert card.read("user16b0") == again
 
 
+@pytest.mark.covers(
+    "imc.param.curpos", "imc.param.curvel", "imc.param.homepos", "imc.param.mcstgvel", "imc.param.sethome"
+)
 def test_an_event_stops_an_axis_and_sets_its_origin() -> None:
     card = ready_card()
     install(
@@ -367,6 +370,7 @@ def test_the_space_holds_128_events_and_0_removes_them() -> None:
     assert (card.read("events"), card.read("user32b0")) == (0, before + 256)
 
 
+@pytest.mark.covers("imc.param.events", "imc.param.ticks")
 def test_a_destination_of_0_stores_nothing() -> None:
     card = ready_card()
     before = card.state.memory.copy()
@@ -382,6 +386,7 @@ def test_commands_and_types_are_numbered_in_the_manuals_order() -> None:
     assert [kind.value for kind in EventType] == list(range(15))
 
 
+@pytest.mark.covers("imc.param.events")
 def test_an_event_on_an_axis_that_is_not_there_does_nothing() -> None:
     card = ready_card(number_of_axes=2)
     before = card.state.memory.copy()
@@ -392,6 +397,7 @@ def test_an_event_on_an_axis_that_is_not_there_does_nothing() -> None:
 
 
 @pytest.mark.parametrize(("command", "bits"), [("SCA32i", 32), ("SCA48i", 48)])
+@pytest.mark.covers("imc.param.events", "imc.param.ticks")
 def test_a_card_may_take_factors_with_16_fraction_bits(command: str, bits: int) -> None:
     for value, factor in ((1_000_003, 65_536), (-77_777, 163_841), (1_234_567, -98_305), (-3, 1)):
         for text, fraction in (("S16.32", 32), ("S16.16", 16)):

@@ -138,6 +138,7 @@ def test_contour_points_go_to_queues_of_points_only(card: ToldCard, handle: lib.
 
 
 @pytest.mark.covers("imc.status.IMC_FIFO_FULL", *functions(SENDERS, WAITERS, PATHS))
+@pytest.mark.covers("imc.IMC_AddContourData", "imc.IMC_ClearFIFO")
 def test_a_full_queue_refuses_and_nothing_is_sent_again(card: ToldCard, handle: lib.IMC_HANDLE) -> None:
     card.full = True
     for name, arguments in {**SENDERS, **WAITERS, **PATHS}.items():
@@ -153,6 +154,7 @@ AXIS_LAST = sorted(set(SENDERS) - {"IMC_SetMulParam", "IMC_InstallEvent"})
 @pytest.mark.covers("imc.status.IMC_INVALID_AXIS")
 @pytest.mark.covers("imc.IMC_GetCapData", "imc.IMC_GetParamBit")
 @pytest.mark.covers("imc.const.AXISNUM", *functions(AXIS_LAST))
+@pytest.mark.covers("imc.IMC_AddContourData")
 def test_axes_that_the_card_does_not_have(card: ToldCard, handle: lib.IMC_HANDLE) -> None:
     for name in AXIS_LAST:
         for axis in (-1, 4):
@@ -179,6 +181,18 @@ def test_axes_that_the_card_does_not_have(card: ToldCard, handle: lib.IMC_HANDLE
 
 
 @pytest.mark.covers("imc.IMC_GetParam32", "imc.IMC_SetParam16")
+@pytest.mark.covers(
+    "imc.IMC_GearFree",
+    "imc.IMC_GearInDist",
+    "imc.IMC_GearInTime",
+    "imc.IMC_GetCapData",
+    "imc.IMC_GetParam16",
+    "imc.IMC_GetParam48",
+    "imc.IMC_GetParamBit",
+    "imc.IMC_HandWheel",
+    "imc.IMC_MovePP",
+    "imc.IMC_MovePV",
+)
 def test_the_axis_of_a_parameter_of_the_card_does_not_matter(card: ToldCard, handle: lib.IMC_HANDLE) -> None:
     assert lib.IMC_SetParam16(handle, lib.emstopLoc, 0x10, 99, I) == lib.IMC_OK
     assert lib.IMC_GetParam32(handle, lib.ticksLoc, -1)[0] == lib.IMC_OK
@@ -194,6 +208,7 @@ def test_the_axis_of_a_parameter_of_the_card_does_not_matter(card: ToldCard, han
     "imc.IMC_SetParam16",
     "imc.IMC_TurnParamBit",
 )
+@pytest.mark.covers("imc.IMC_WaitParam", "imc.param.emstop")
 def test_addresses_without_a_parameter(card: ToldCard, handle: lib.IMC_HANDLE) -> None:
     for at in (-1, 0, 3, 9, 24, 900, 1024, 40000):
         assert lib.IMC_SetParam16(handle, at, 1, 0, I) == lib.IMC_INVALID_PARAM, at
@@ -208,6 +223,13 @@ def test_addresses_without_a_parameter(card: ToldCard, handle: lib.IMC_HANDLE) -
 @pytest.mark.covers("imc.status.IMC_PARAM_READ_ONLY")
 @pytest.mark.covers("imc.IMC_GetParam16")
 @pytest.mark.parametrize("name", ["mcsmoving", "curpos", "naxis", "fwversion", "gin1", "poserr"])
+@pytest.mark.covers(
+    "imc.IMC_GetParam32",
+    "imc.IMC_GetParamBit",
+    "imc.IMC_SetParam16",
+    "imc.IMC_TurnParamBit",
+    "imc.IMC_WaitParam",
+)
 def test_parameters_that_cannot_be_written(card: ToldCard, handle: lib.IMC_HANDLE, name: str) -> None:
     at = PARAMETERS[name].address
     for refused in (
@@ -283,6 +305,7 @@ REFUSED: list[tuple[lib.IMC_STATUS, str, tuple[Any, ...]]] = [
 @pytest.mark.covers("imc.status.IMC_OUT_OF_RANGE")
 @pytest.mark.covers("imc.IMC_GetCapData")
 @pytest.mark.covers("imc.const.limits")
+@pytest.mark.covers("imc.IMC_GetParam16", "imc.IMC_ORXORParam")
 def test_numbers_out_of_range(card: ToldCard, handle: lib.IMC_HANDLE) -> None:
     for status, name, arguments in REFUSED:
         assert getattr(lib, name)(handle, *arguments) == status, (name, arguments)
@@ -308,6 +331,14 @@ def test_the_largest_that_is_taken(handle: lib.IMC_HANDLE) -> None:
     assert lib.IMC_SetParamBit(handle, 562, 15, 1, 3, I) == lib.IMC_OK
 
 
+@pytest.mark.covers(
+    "imc.IMC_AddLineN",
+    "imc.IMC_GearFree",
+    "imc.IMC_GetCapData",
+    "imc.IMC_GetMulParam",
+    "imc.IMC_SetParam16",
+    "imc.IMC_SetParamBit",
+)
 def test_contour_data_are_whole_points(card: ToldCard, handle: lib.IMC_HANDLE) -> None:
     card.memory[lib.groupnumLoc, 0] = 3
     assert lib.IMC_PutContourData(handle, list(range(30)), 30, C) == lib.IMC_OK
@@ -316,6 +347,7 @@ def test_contour_data_are_whole_points(card: ToldCard, handle: lib.IMC_HANDLE) -
 
 
 @pytest.mark.covers("imc.IMC_InstallEvent")
+@pytest.mark.covers("imc.param.groupnum")
 def test_events_that_do_not_fit_any_more(card: ToldCard, handle: lib.IMC_HANDLE) -> None:
     event = lib.EventInfo.of(lib.CMD_SET16, src2=1, dest=(307, 0))
     card.room_for_events = 3
@@ -347,6 +379,7 @@ def test_events_that_mean_nothing(
 
 
 @pytest.mark.covers("imc.IMC_GetMulParam")
+@pytest.mark.covers("imc.IMC_InstallEvent")
 def test_a_refused_read_leaves_its_structures_alone(handle: lib.IMC_HANDLE) -> None:
     elements = many((12, 0, 2), (9, 0, 2))
     elements[0].data[0] = 77
@@ -354,6 +387,7 @@ def test_a_refused_read_leaves_its_structures_alone(handle: lib.IMC_HANDLE) -> N
     assert elements[0].data[0] == 77
 
 
+@pytest.mark.covers("imc.IMC_GetMulParam")
 def test_points_for_a_path_queue_are_an_instruction_of_whole_points(
     card: ToldCard, handle: lib.IMC_HANDLE
 ) -> None:
@@ -369,6 +403,7 @@ def test_points_for_a_path_queue_are_an_instruction_of_whole_points(
 
 
 @pytest.mark.covers("imc.IMC_SetMulParam")
+@pytest.mark.covers("imc.param.groupnum", "imc.param.pathaxisnum1", "imc.param.pathaxisnum2")
 def test_what_a_queue_never_holds_is_out_of_range_and_not_a_full_queue() -> None:
     card = Card(parse_card("ready = true\n[depths]\nififo = 64\nqfifo = 64\npfifo1 = 64\ncfifo = 100\n"))
     handle = opened(card)
@@ -387,6 +422,7 @@ def test_what_a_queue_never_holds_is_out_of_range_and_not_a_full_queue() -> None
     lib.detach()
 
 
+@pytest.mark.covers("imc.IMC_AddContourData", "imc.IMC_InstallEvent", "imc.IMC_SetMulParam")
 def test_a_star_import_brings_functions_codes_and_addresses() -> None:
     names: dict[str, Any] = {}
     exec("from polycnc.controllers.imc.imclib import *", names)
@@ -398,6 +434,7 @@ def test_a_star_import_brings_functions_codes_and_addresses() -> None:
 
 
 @pytest.mark.covers("imc.IMC_SetParam32")
+@pytest.mark.covers("imc.IMC_MoveAbsolute", "imc.param.mcstgpos")
 def test_floats_are_converted_where_c_converts_them(card: ToldCard, handle: lib.IMC_HANDLE) -> None:
     position: Any = -1234.9
     velocity: Any = 2.5 * 65536

@@ -340,6 +340,7 @@ def test_velocity_over_the_way_of_another_axis(program: Program) -> None:
     assert program.get("mcsvel", 1) == -20 * 65536
 
 
+@pytest.mark.covers("imc.IMC_MoveAbsolute")
 def test_a_poll_may_go_to_the_next_rest_of_an_axis() -> None:
     program = Program(clock=Poll(1000))
     program.ok(lib.IMC_MoveAbsolute, 6250, 0, Q)
@@ -351,6 +352,7 @@ def test_a_poll_may_go_to_the_next_rest_of_an_axis() -> None:
     lib.detach()
 
 
+@pytest.mark.covers("imc.IMC_GetParam32", "imc.IMC_Open")
 def test_two_cards_keep_in_step() -> None:
     cards = Card(parse_card("ready = true")), Card(parse_card("ready = true"))
     lib.attach(*cards)
@@ -376,6 +378,7 @@ def test_two_cards_keep_in_step() -> None:
     ],
 )
 @pytest.mark.covers("imc.IMC_GearInDist", "imc.const.synsourcetype")
+@pytest.mark.covers("imc.param.pcstgvel")
 def test_each_sync_source_paces_the_engagement_by_its_own_quantity(
     program: Program, code: int, cycles: int
 ) -> None:

@@ -48,6 +48,7 @@ def test_a_limit_switch_stops_the_motion_towards_it_only(way: int, bit: int, lev
 
 @pytest.mark.covers("imc.param.aioctr")
 @pytest.mark.parametrize("way", [1, -1])
+@pytest.mark.covers("imc.param.homeseq", "imc.param.mcsdist")
 def test_at_a_limit_switch_every_command_leads_away_from_it_only(way: int) -> None:
     card = ready_card(LIMITS)
     set_now(card, ("aioctr", 0x000F))
@@ -97,6 +98,7 @@ def test_limits_work_by_their_polarity_and_only_when_they_are_used() -> None:
 
 
 @pytest.mark.covers("imc.param.aiolat", "imc.param.clraiolat")
+@pytest.mark.covers("imc.param.aioctr")
 def test_a_latched_terminal_is_cleared_by_its_own_bit() -> None:
     card = ready_card("[[axis]]\nlimit_positive = 100.0\norigin = [30.0, 60.0]\n")
     set_now(card, ("aioctr", 0x11))  # positive limit and origin become active when they close
@@ -122,6 +124,7 @@ def test_software_limits_work_when_they_are_switched_on(way: int, bit: int) -> N
         assert (abs(card.read("curpos")) < 1200) == (error != 0)
 
 
+@pytest.mark.covers("imc.param.stopfilt")
 def test_an_error_that_no_mask_names_changes_nothing() -> None:
     card = ready_card(LIMITS)
     set_now(card, ("aioctr", 0x000F), ("stopfilt", 0))
@@ -133,6 +136,7 @@ def test_an_error_that_no_mask_names_changes_nothing() -> None:
 @pytest.mark.covers("imc.param.stopfilt")
 @pytest.mark.covers("imc.param.stopmode")
 @pytest.mark.parametrize(("soft", "way", "bit"), [(0, 1, 1), (0, -1, 2), (1, 1, 4), (1, -1, 8)])
+@pytest.mark.covers("imc.param.nsoftlim", "imc.param.psoftlim")
 def test_stopmode_names_the_errors_that_stop_at_once_and_all_others_brake(
     soft: int, way: int, bit: int
 ) -> None:
@@ -166,6 +170,7 @@ def test_exitfilt_names_the_errors_that_end_run() -> None:
 
 
 @pytest.mark.covers("imc.param.poserrlim")
+@pytest.mark.covers("imc.param.ena", "imc.param.poserr")
 def test_a_position_error_beyond_its_limit_is_an_error() -> None:
     card = ready_card()
     set_now(card, ("poserrlim", 100), ("ena", 0))
@@ -179,6 +184,7 @@ def test_a_position_error_beyond_its_limit_is_an_error() -> None:
 @pytest.mark.covers("imc.param.run")
 @pytest.mark.covers("imc.param.vellim", "imc.param.accellim")
 @pytest.mark.parametrize(("name", "value", "bit"), [("vellim", 30, 0x2000), ("accellim", 0.5, 0x4000)])
+@pytest.mark.covers("imc.param.exitfilt", "imc.param.mcsaccel", "imc.param.smooth", "imc.param.stopfilt")
 def test_speed_and_acceleration_limits_end_run_whatever_the_masks_say(
     name: str, value: float, bit: int
 ) -> None:
@@ -197,6 +203,7 @@ def test_speed_and_acceleration_limits_end_run_whatever_the_masks_say(
 
 
 @pytest.mark.covers("imc.param.emstop")
+@pytest.mark.covers("imc.param.ena")
 def test_an_emergency_stop_takes_everything_out_of_work_until_it_is_set_up_again() -> None:
     card = ready_card()
     enable_path(card, 0, 1)
@@ -223,6 +230,7 @@ def test_an_emergency_stop_takes_everything_out_of_work_until_it_is_set_up_again
     assert [card.read("error", i) for i in range(4)] == [0] * 4
 
 
+@pytest.mark.covers("imc.param.emstop")
 def test_other_bits_of_emstop_are_errors_of_every_axis() -> None:
     card = ready_card()
     send(card, IFIFO, ("mcstgvel", 20, 2), ("emstop", 0x40))
@@ -243,6 +251,7 @@ def test_a_limit_under_a_path_stops_the_path_along_itself() -> None:
     assert (card.read("startpath1"), card.read("moving"), card.read("error")) == (0, 0, 1)
 
 
+@pytest.mark.covers("imc.param.gearsrc")
 def test_run_set_to_0_stops_at_once_and_a_gear_is_left() -> None:
     card = ready_card()
     send(card, IFIFO, ("gearratio", 1.0, 1), ("gearsrc", 227, 1), ("engear", FLAG, 1), ("mcstgvel", 10))
@@ -252,6 +261,7 @@ def test_run_set_to_0_stops_at_once_and_a_gear_is_left() -> None:
     assert (card.read("curvel", 1), card.read("engear", 1), card.read("curvel", 0)) == (0, 0, 10)
 
 
+@pytest.mark.covers("imc.param.gearsrc")
 def test_a_card_that_is_switched_on_at_its_switches_shows_them() -> None:
     card = ready_card(
         "number_of_axes = 3\n[[axis]]\n[[axis]]\n"

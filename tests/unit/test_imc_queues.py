@@ -75,6 +75,7 @@ def test_a_wait_for_ever_in_one_queue_leaves_the_others_alone() -> None:
 
 
 @pytest.mark.parametrize("release", ["qwaittime", "clrqfifo", "clearimc"])
+@pytest.mark.covers("imc.param.clrqfifo")
 def test_a_wait_is_released_by_its_time_register_or_by_clearing(release: str) -> None:
     card = ready_card()
     card.push(QFIFO, WaitTime(-1))
