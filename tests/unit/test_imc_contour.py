@@ -129,16 +129,16 @@ def test_probe_pulses_are_captured_while_capture_is_on() -> None:
 
 
 @pytest.mark.covers("imc.param.capture", "imc.param.cappos")
-@pytest.mark.parametrize("name", ["capture", "capture2"])
+@pytest.mark.parametrize(("name", "value"), [("capture", FLAG), ("capture2", 0), ("capture", 0)])
 @pytest.mark.covers("imc.param.curpos", "imc.param.encp", "imc.param.encpfactor", "imc.param.mcstgvel")
-def test_a_write_captures_the_position_of_this_moment(name: str) -> None:
+def test_a_write_captures_the_position_of_this_moment(name: str, value: int) -> None:
     card = ready_card()
     set_now(card, ("encpfactor", 0.5))  # the encoder, not the command, is captured
     send(card, IFIFO, ("mcstgvel", 10))
     card.advance(33)
     here = card.read("encp")
     assert 0 < here < card.read("curpos")
-    send(card, IFIFO, (name, FLAG))
+    send(card, IFIFO, (name, value))
     card.advance(10)
     assert card.read("cappos") == here < card.read("encp")
     assert card.read_capture(0, 5) == ((here,), 0)

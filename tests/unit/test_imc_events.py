@@ -98,7 +98,7 @@ def _result(card: Card, command: str, immediate: bool, a: int, b: int) -> tuple[
     return card.read_raw(CELLS[result][2], 0, result // 16), _signed(compute(a, b), result)
 
 
-@pytest.mark.covers(*(f"imc.event.{command.name}" for command in EventCommand))
+@pytest.mark.covers(*(f"imc.event.{command.name}" for command in EventCommand), "imc.enum.IMC_EVENT_CMD")
 @pytest.mark.parametrize(("command", "immediate"), _names())
 def test_every_command_computes_in_twos_complement(command: str, immediate: bool) -> None:
     card = ready_card(number_of_axes=1)

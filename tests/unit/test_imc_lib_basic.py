@@ -161,6 +161,23 @@ def test_a_wait_holds_its_queue_and_no_other(program: Program) -> None:
     assert program.get("user16b0") == 1
 
 
+@pytest.mark.covers("imc.IMC_WaitTime", "imc.IMC_WaitParam", "imc.IMC_WaitParamBit", "imc.IMC_WaitParamMask")
+def test_a_long_wait_is_shown_with_all_its_time(program: Program) -> None:
+    for name, arguments in (
+        ("IMC_WaitTime", (2_000_000_003,)),
+        ("IMC_WaitParam", (lib.user16b0Loc, 5, 1_900_000_005, 0)),
+        ("IMC_WaitParamBit", (lib.user16b0Loc, 5, 1, 1_800_000_007, 0)),
+        ("IMC_WaitParamMask", (lib.user16b0Loc, 5, 1, 1_700_000_009, 0)),
+    ):
+        for fifo, shown in ((Q, "qwaittime"), (P1, "pwaittime1"), (P2, "pwaittime2")):
+            program.card.write("startpath1", -1)
+            program.card.write("startpath2", -1)
+            program.ok(getattr(lib, name), *arguments, fifo)
+            program.run(3)
+            assert program.get(shown) == next(each for each in arguments if each > 1 << 20) - 2
+            program.ok(lib.IMC_ClearFIFO, fifo)
+
+
 @pytest.mark.covers("imc.IMC_WaitTime")
 @pytest.mark.covers("imc.IMC_ClearFIFO")
 @pytest.mark.parametrize("endless", [0, -1])

@@ -100,7 +100,7 @@ MANUAL_NAMES = {
 }  # fmt: skip
 
 
-@pytest.mark.covers(*functions(SENDERS, WAITERS, PATHS))
+@pytest.mark.covers(*functions(SENDERS, WAITERS, PATHS), "imc.status.IMC_INVALID_FIFO", "imc.enum.FIFO_SEL")
 @pytest.mark.covers(
     "imc.fifo.SEL_IFIFO",
     "imc.fifo.SEL_QFIFO",
@@ -230,6 +230,10 @@ def test_addresses_without_a_parameter(card: ToldCard, handle: lib.IMC_HANDLE) -
     "imc.IMC_TurnParamBit",
     "imc.IMC_WaitParam",
 )
+@pytest.mark.covers(
+    *(f"imc.IMC_{name}" for name in ("SetParam16", "SetParam32", "SetParam48", "SetParamBit", "ORXORParam")),
+    *(f"imc.IMC_{name}" for name in ("TurnParamBit", "SetMulParam", "InstallEvent", "GetParam16")),
+)
 def test_parameters_that_cannot_be_written(card: ToldCard, handle: lib.IMC_HANDLE, name: str) -> None:
     at = PARAMETERS[name].address
     for refused in (
@@ -319,11 +323,13 @@ def test_numbers_out_of_range(card: ToldCard, handle: lib.IMC_HANDLE) -> None:
     "imc.const.limits", "imc.IMC_GetCapData", "imc.IMC_AddContourData", "imc.IMC_InstallEvent"
 )
 @pytest.mark.covers("imc.type.IMCFLOAT", "imc.IMC_GearFree")
-def test_the_largest_that_is_taken(handle: lib.IMC_HANDLE) -> None:
+def test_the_largest_that_is_taken(card: ToldCard, handle: lib.IMC_HANDLE) -> None:
     event = lib.EventInfo.of(lib.CMD_SET16, src2=1, dest=(307, 0))
     assert lib.IMC_GetMulParam(handle, many(*[(12, 0, 3)] * 32), 32) == lib.IMC_OK
     assert lib.IMC_InstallEvent(handle, [event] * 31, 31, I) == lib.IMC_OK
-    assert lib.IMC_PutContourData(handle, [-32768] * 126, 126, C) == lib.IMC_OK
+    points = [(-1) ** k * 32767 - k % 2 for k in range(126)]
+    assert lib.IMC_PutContourData(handle, points, 126, C) == lib.IMC_OK
+    assert card.points == points
     assert lib.IMC_GetCapData(handle, 120, 0) == (lib.IMC_OK, [], 0, 0)
     assert lib.IMC_AddLineN(handle, line(4), P1) == lib.IMC_OK
     assert lib.IMC_GearFree(handle, 32767.999999999767, 3, 4, 0, I) == lib.IMC_OK

@@ -246,9 +246,14 @@ def test_basic_functions(card: ToldCard, handle: lib.IMC_HANDLE) -> None:
 )
 def test_several_parameters_are_one_instruction(card: ToldCard, handle: lib.IMC_HANDLE) -> None:
     elements = [lib.WR_MUL_DES.of(12, 0, 2, -7), lib.WR_MUL_DES.of(23, 1, 1, -1)]
-    elements.append(lib.WR_MUL_DES.of(175, 2, 3, 1 << 32))
+    elements.append(lib.WR_MUL_DES.of(175, 2, 3, -(1 << 46) - 5))
+    elements.append(lib.WR_MUL_DES.of(12, 3, 2, 1_900_000_003))
     lib.IMC_SetMulParam(handle, elements, 2, lib.SEL_QFIFO)
-    assert card.told == [(1, WriteMany((Write(12, -7, 0, 2), Write(23, -1, 1, 1))))]
+    first = (Write(12, -7, 0, 2), Write(23, -1, 1, 1))
+    assert card.told == [(1, WriteMany(first))]
+    lib.IMC_SetMulParam(handle, elements, 4, lib.SEL_PFIFO2)
+    last = (Write(175, -(1 << 46) - 5, 2, 3), Write(12, 1_900_000_003, 3, 2))
+    assert card.told[1:] == [(3, WriteMany((*first, *last)))]
 
 
 @pytest.mark.covers(
@@ -312,6 +317,8 @@ def test_segments(card: ToldCard, handle: lib.IMC_HANDLE) -> None:
 
 @pytest.mark.covers(
     "imc.IMC_InstallEvent",
+    "imc.enum.IMC_EVENT_CMD",
+    "imc.enum.IMC_EventType",
     "imc.struct.EventInfo",
     "imc.struct.EventInfo.Src2.param",
     "imc.struct.EventInfo.Src2.data16",

@@ -131,13 +131,18 @@ def test_a_type_has_its_width_and_range(name: str, low: float, high: float) -> N
     assert each.to_raw(high) == raw // (2 if low < 0 else 1) - 1 or each.type in ("F16", "R16")
 
 
+@pytest.mark.covers("imc.type.S16.32", "imc.type.S16.16")
 def test_ratios_have_exact_words() -> None:
     card = Card()
-    for ratio, words in ((0.5, (0, 0x8000, 0)), (-1.5, (0, 0x8000, 0xFFFE))):
+    # rounded to the nearest: 2/3 is AAAA AAAA.AAA...
+    thirds = ((2 / 3, (0xAAAB, 0xAAAA, 0)), (-2 / 3, (0x5555, 0x5555, 0xFFFF)))
+    for ratio, words in ((0.5, (0, 0x8000, 0)), (-1.5, (0, 0x8000, 0xFFFE)), *thirds):
         card.write("gearratio", ratio)
         assert card.read_words(175, 0, 3) == words
     card.write("gearratio", 32767.999999999767)
     assert card.read_raw(175, 0, 3) == 0x7FFF_FFFF_FFFF
+    card.write("gearoutvel", -2 / 3)
+    assert card.read_words(address("gearoutvel"), 0, 2) == (0x5555, 0xFFFF)
     card.write("gearoutvel", 100)
     assert card.read_raw(address("gearoutvel"), 0, 2) == 100 * 65536
 
