@@ -237,6 +237,10 @@ SHOWN = (
 )  # fmt: skip
 NAMES = sorted({name for _, steps in SCENES.values() for _, given in steps for name in given} | set(SHOWN))
 NO_ROWS = {"spin_handwheel", "touch_probe", "homestpos", "biciraxis", "haltmode", "haltstep"}
+FLAGS = {
+    "mcsgo", "pcsgo", "mcstrack", "pcstrack", "shiftmaster", "engear", "gearoutmod", "ciraxis", "biciraxis", "enasyn",
+    "startsyn", "syntype", "slaveabs", "sethome", "gohome", "haltstep", "haltmode",
+}  # fmt: skip
 RECORDED = Path(__file__).parents[1] / "golden" / "imc" / "scenes.txt"
 
 
@@ -298,6 +302,29 @@ def test_the_third_axis_does_what_the_first_one_does(scene: str, request: pytest
         tracks.append(track)
     assert all((one == other).all() for one, other in zip(*tracks, strict=True))
     is_as_recorded(scene, written_down(scene, "A", tracks[0], ends), request)
+
+
+COMMANDED = ("curpos", "curvel", "mcspos", "pcspos", "encp", "error", "motion", "homed")
+
+
+@pytest.mark.covers(*(f"imc.param.{name}" for name in sorted(FLAGS - {"haltstep", "haltmode", "biciraxis"})))
+def test_any_number_but_0_sets_a_flag() -> None:
+    for name in ("gear", "gears", "ring", "home back", "ends", "far gears"):
+        axis_text, steps = SCENES[name]
+        tracks = []
+        for flag in (FLAG, 1, 0x2000):
+            card = ready_card(f"[[axis]]\n{axis_text}[[axis]]\n")
+            set_now(card, ("mcstgvel", 5, 1))
+            track = []
+            for cycles, given in steps:
+                for each, value in given.items():
+                    if each != "spin_handwheel":
+                        set_now(card, (each, flag if each in FLAGS and value == FLAG else value))
+                for _ in range(cycles):
+                    card.advance(1)
+                    track.append([card.read(each) for each in COMMANDED])
+            tracks.append(track)
+        assert tracks[0] == tracks[1] == tracks[2], name
 
 
 @pytest.mark.parametrize("scene", CARD)

@@ -592,3 +592,21 @@ def test_a_slave_whose_move_cannot_be_leaves_the_gear_and_stops() -> None:
     card.advance(20)
     assert (card.read("error", 1), card.read("engear", 1), card.read("mcsvel", 1)) == (0x200, 0, 0)
     assert card.read("mcsvel", 0) == 10
+
+
+@pytest.mark.covers("imc.param.synsrc", "imc.param.synsrcvar", "imc.param.ciraxis", "imc.concept.sync_laws")
+@pytest.mark.parametrize("source", ["curpos", "mcspos", "encp"])
+@pytest.mark.parametrize("speed", [7, -7])
+def test_what_a_ring_axis_paces_does_not_notice_its_turns(source: str, speed: int) -> None:
+    card = ready_card()
+    set_now(card, ("cirpos", 90), ("ciraxis", FLAG), ("mcstgvel", speed), ("mcsaccel", 10))
+    card.advance(5)
+    pace = (("synsrc", address(source), 2), ("synaxis", 0, 2), ("synsrcvar", 280, 2))
+    set_now(
+        card, *pace, ("syntype", FLAG, 2), ("slavedist", 1000, 2), ("enasyn", FLAG, 2), ("startsyn", FLAG, 2)
+    )
+    card.advance(20)  # 140 pulses, more than a turn: half of the way, with a cubic that is symmetric
+    assert card.read("mcspos", 2) == pytest.approx(500, abs=40)
+    assert card.read("startsyn", 2) == FLAG
+    card.advance(22)
+    assert (card.read("mcspos", 2), card.read("startsyn", 2)) == (1000, 0)

@@ -193,6 +193,54 @@ def test_homing(name: str, arguments: tuple[int, ...], start: int, origin: int, 
     assert stopped == pytest.approx(end, abs=12 if abs(end) == 200 else 2)
 
 
+HOMING_SPEEDS = {  # the speeds that an axis has on its ways, one after the other, in the direction of the search
+    "IMC_HomeSwitch1": [20],
+    "IMC_HomeSwitch2": [20, -2],
+    "IMC_HomeSwitch3": [20, -2, 2],
+    "IMC_HomeSwitchIndex1": [20],
+    "IMC_HomeSwitchIndex2": [20, -2],
+    "IMC_HomeSwitchIndex3": [20, -2, 2],
+    "IMC_HomeIndex": [20],
+}
+
+
+@pytest.mark.covers("imc.concept.homing", "imc.param.highvel", "imc.param.lowvel", "imc.const.direction")
+@pytest.mark.parametrize(
+    ("name", "speeds"),
+    [
+        pytest.param(name, speeds, marks=pytest.mark.covers(f"imc.{name}"))
+        for name, speeds in HOMING_SPEEDS.items()
+    ],
+)
+def test_homing_has_its_two_speeds(program: Program, name: str, speeds: list[int]) -> None:
+    lib.detach()
+    for way in (1, -1):
+        program = Program(HOMING)
+        for rate in ("mcsaccel", "mcsdecel"):  # so high that every speed is reached at once
+            program.card.write(rate, 2.5, axis=2)
+        if way < 0:
+            program.card.write("homepos", 9000, axis=2)
+            program.ok(lib.IMC_MoveAbsolute, 9000, 2, IF)
+            program.rest(2)
+        edge = () if name == "IMC_HomeIndex" else (1,)
+        program.ok(getattr(lib, name), int(way < 0), *edge, 0, 2, IF)
+        tops: list[int] = []
+        before = 0
+        for _ in range(1500):
+            speed = program.get("mcsvel", 2)
+            if speed * before <= 0 and speed != 0:
+                tops.append(0)
+            if abs(speed) > abs(tops[-1] if tops else 0):
+                tops[-1] = speed
+            before = speed
+            if program.get("gohome", 2) == 0 and tops:
+                break
+            program.run(1)
+        assert tops == [each * way * 65536 for each in speeds]
+        assert program.get("homed", 2) == -1
+        lib.detach()
+
+
 @pytest.mark.covers("imc.concept.gear_law", "imc.param.engear", "imc.param.gearoutmod", "imc.param.mcsaccel")
 @pytest.mark.covers("imc.IMC_GearFree")
 def test_free_gear_follows_with_the_ramp_of_the_slave(program: Program) -> None:

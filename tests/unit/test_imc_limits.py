@@ -81,20 +81,31 @@ def test_at_a_limit_switch_every_command_leads_away_from_it_only(way: int) -> No
 
 
 @pytest.mark.covers("imc.param.aioctr")
-@pytest.mark.covers("imc.param.aiolat", "imc.param.clraiolat")
-def test_limits_work_by_their_polarity_and_only_when_they_are_used() -> None:
-    low = 'low_when_on = ["limit_positive"]\n'
-    for text, control, error in (("", 0x0, 0), ("", 0x2, 1), ("", 0x3, 1), (low, 0x2, 1), (low, 0x3, 1)):
-        card = ready_card("[[axis]]\nlimit_positive = 1000.0\n" + text)
+@pytest.mark.covers("imc.param.aiolat", "imc.param.clraiolat", "imc.param.aio", "imc.param.error")
+@pytest.mark.parametrize(
+    ("way", "name", "on", "high", "bit"), [(1, "positive", 2, 1, 1), (-1, "negative", 8, 4, 2)]
+)
+def test_limits_work_by_their_polarity_and_only_when_they_are_used(
+    way: int, name: str, on: int, high: int, bit: int
+) -> None:
+    low = f'low_when_on = ["limit_{name}"]\n'
+    for text, control, error in (
+        ("", 0, 0),
+        ("", on, bit),
+        ("", on | high, bit),
+        (low, on, bit),
+        (low, on | high, bit),
+    ):
+        card = ready_card(f"[[axis]]\nlimit_{name} = {1000.0 * way}\n" + text)
         set_now(card, ("aioctr", control))
-        send(card, IFIFO, ("mcstgvel", 20))
+        send(card, IFIFO, ("mcstgvel", 20 * way))
         card.advance(10)
         early = card.read("error")
         card.advance(100)
-        wrong_way_round = bool(text) == bool(control & 1) and control != 0
-        assert early == (1 if wrong_way_round else 0)
+        wrong_way_round = bool(text) == bool(control & high) and control != 0
+        assert early == (bit if wrong_way_round else 0)
         assert card.read("error") == error
-        assert bool(int(card.read("aiolat")) & 1) == (bool(text) != bool(control & 1))
+        assert bool(int(card.read("aiolat")) & bit) == (bool(text) != bool(control & high))
 
 
 @pytest.mark.covers("imc.param.aiolat", "imc.param.clraiolat")
