@@ -48,7 +48,7 @@ def test_a_limit_switch_stops_the_motion_towards_it_only(way: int, bit: int, lev
 
 @pytest.mark.covers("imc.param.aioctr")
 @pytest.mark.parametrize("way", [1, -1])
-@pytest.mark.covers("imc.param.homeseq", "imc.param.mcsdist")
+@pytest.mark.covers("imc.param.homeseq", "imc.param.mcsdist", "imc.param.mcstgvel", "imc.param.mcstgpos")
 def test_at_a_limit_switch_every_command_leads_away_from_it_only(way: int) -> None:
     card = ready_card(LIMITS)
     set_now(card, ("aioctr", 0x000F))
@@ -163,6 +163,36 @@ def test_stopmode_names_the_errors_that_stop_at_once_and_all_others_brake(
         assert card.read("error", 1) == bit
         assert least <= card.read("curpos", 1) * way - 500 <= most
         assert (card.read("curvel", 1), card.read("curvel", 2)) == (0, 3)
+
+
+@pytest.mark.covers("imc.param.stopfilt", "imc.param.stopmode", "imc.param.exitfilt", "imc.param.error")
+@pytest.mark.covers("imc.param.emstop", "imc.param.run")
+def test_each_bit_of_the_masks_is_for_its_own_error() -> None:
+    for number in range(16):
+        bit = 1 << number
+        for stop, mode, leave, way, after, run in (  # after two cycles from 9 pulses/ms with 2 pulses/ms2
+            (bit, ~bit, ~bit, 1, 5, FLAG),
+            (bit, bit, ~bit, -1, 0, FLAG),
+            (~bit, bit, ~bit, 1, 9, FLAG),
+            (0, 0, bit, -1, 0, 0),
+        ):
+            card = ready_card(number_of_axes=2)
+            set_now(card, ("mcsaccel", 9, 1), ("mcsdecel", 2, 1), ("mcstgvel", 9 * way, 1))
+            set_now(card, ("stopfilt", stop, 1), ("stopmode", mode, 1), ("exitfilt", leave, 1))
+            limit_of_this_way = (way > 0) == (number in (0, 2))
+            card.advance(1)
+            if number < 4 and not limit_of_this_way:
+                continue  # a limit stops what goes towards it
+            name, axis = ("emstop", 0) if number in (5, 6, 13) else ("error", 1)
+            set_now(card, (name, bit, axis))
+            card.advance(3)
+            assert (card.read("curvel", 1) * way, card.read("run", 1)) == (after, run), (
+                number,
+                stop,
+                mode,
+                leave,
+            )
+            assert int(card.read("error", 1)) & 0xFFFF == bit
 
 
 @pytest.mark.covers("imc.param.exitfilt")

@@ -119,7 +119,7 @@ def test_a_type_has_its_width_and_range(name: str, low: float, high: float) -> N
         card.write(name, value)
         assert card.read(name) == pytest.approx(value, abs=1e-12)
     if each.type[0] in "SU":  # in a card file, and for other programs, too
-        assert (each.least, each.most) == (low, pytest.approx(high, abs=1e-12))
+        assert [each.least, each.most] == pytest.approx([low, high], abs=1e-12)
         values, step = f"parameters = {{ {name} = %r }}\n", 1 if each.fraction_bits == 0 else 1.0
         text = values if each.scope == "G" else "[[axis]]\n" + values
         assert parse_card(text % low)

@@ -449,8 +449,7 @@ def test_clear_puts_an_axis_at_zero_without_errors() -> None:
     assert all(card.read(n) != 0 for n in names if not n.startswith("pcs"))
     set_now(card, ("clear", FLAG))
     card.advance(1)
-    names = ("mcspos", "mcstgpos", "curpos", "encp", "pcspos", "pcstgpos", "error", "encs", "aiolat", "clear")
-    assert [card.read(n) for n in names] == [0] * len(names)
+    assert [card.read(n) for n in (*names, "clear")] == [0] * 10
 
 
 @pytest.mark.covers("imc.param.ciraxis", "imc.param.cirpos")
