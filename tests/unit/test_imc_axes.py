@@ -143,7 +143,7 @@ SCENES: dict[str, tuple[str, Steps]] = {
         [
             (20, {"vellim": 32767, "accellim": 32767, "mcsaccel": 2000.3, "mcsdecel": 3000.1, "master": 1,
                   "gearsrc": address("curvel"), "gearratio": -4321.1, "engear": FLAG}),
-            (10, {"gearoutmod": FLAG, "gearoutvel": -30000.3, "engear": 0}),
+            (10, {"gearoutmod": FLAG, "gearoutvel": 30000.3, "engear": 0}),
             (15, {"syntype": FLAG, "slaveabs": FLAG, "synsrc": address("curpos"), "synaxis": 1,
                   "synsrcvar": 33_000_001, "slavedist": -1_800_000_001, "enasyn": FLAG, "startsyn": FLAG}),
             (10, {"enasyn": 0, "syntype": 0, "synsrcvar": 7, "mcstgvel": 20000.3}),

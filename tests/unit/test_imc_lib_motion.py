@@ -322,7 +322,15 @@ def test_position_over_time(program: Program) -> None:
     assert program.get("curpos", 1) == 0
     program.set("startsyn", -1, 1)
     program.run(1)
-    program.run(990)
+    speeds = []
+    for _ in range(990):
+        program.run(1)
+        speeds.append(program.get("mcsvel", 1) / 65536)
+    # from rest to rest with one rise: half as fast again as the mean at half time, and as slow in the end as at first
+    assert speeds[0] < 0.1
+    assert speeds[989] < 0.4
+    assert max(speeds) == pytest.approx(7.5, abs=0.1)
+    assert max(speeds) - speeds[498] < 0.01
     assert 4900 < program.get("curpos", 1) < 5000
     program.run(12)
     assert (program.get("curpos", 1), program.get("mcsvel", 1)) == (5000, 0)

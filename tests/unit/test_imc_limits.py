@@ -195,6 +195,19 @@ def test_each_bit_of_the_masks_is_for_its_own_error() -> None:
             assert int(card.read("error", 1)) & 0xFFFF == bit
 
 
+@pytest.mark.covers("imc.param.psoftlim", "imc.param.nsoftlim", "imc.param.aioctr", "imc.param.error")
+@pytest.mark.parametrize(("way", "name", "bit"), [(1, "psoftlim", 4), (-1, "nsoftlim", 8)])
+def test_a_software_limit_is_met_where_it_lies(way: int, name: str, bit: int) -> None:
+    for beyond, error in ((0, bit), (1, 0)):
+        card = ready_card()
+        set_now(card, ("mcsaccel", 7), ("stopfilt", 0), ("aioctr", 0xC000), (name, way * (70_000 + beyond)))
+        set_now(card, ("homepos", 69_930 * way), ("sethome", FLAG), ("mcstgvel", 7 * way))
+        card.advance(9)
+        assert (card.read("curpos"), card.read("error")) == (69_993 * way, 0)
+        card.advance(1)
+        assert (card.read("curpos"), card.read("error")) == (70_000 * way, error)
+
+
 @pytest.mark.covers("imc.param.exitfilt")
 def test_exitfilt_names_the_errors_that_end_run() -> None:
     card = ready_card(LIMITS)

@@ -20,7 +20,13 @@ from support.imc_card import IFIFO
 AXES = 4
 BITS = {"S16": 16, "U16": 16, "F16": 16, "R16": 16, "S32": 32, "U32": 32, "S16.16": 32, "U16.16": 32}
 BITS |= {"S16.32": 48, "U16.32": 48}
-PATTERNS = (0x5A3C_7E1F_6B2D, -0x5A3C_7E1F_6B2D, 0, -0x0180_0100_2003)  # each is cut to the width of a word
+PATTERNS = (
+    0x5A3C_7E1F_6B2D,
+    -0x5A3C_7E1F_6B2D,
+    0,
+    -0x0180_0100_2003,
+    -7,
+)  # each is cut to the width of a word; the last is -1 for axis 3
 
 # What belongs to the card: the number that was written last stays for every axis.
 SHARED = {
