@@ -120,6 +120,46 @@ SCENES: dict[str, tuple[str, Steps]] = {
             (20, {"capture": FLAG, "clrencs": FLAG}),
         ],
     ),
+    "ends": (
+        "",
+        [
+            (3, {"homepos": 2_147_000_003, "sethome": FLAG}),
+            (25, {"vellim": 32767.5, "accellim": 32767.5, "mcsmaxvel": 31000.3, "mcsaccel": 12000.7, "mcsdecel": 9000.1,
+                  "mcsdist": -1_900_000_001, "mcsgo": FLAG, "breakp": 2_146_900_001, "clear": 0}),
+            (20, {"pcsmaxvel": 30000.7, "pcsaccel": 9000.3, "pcsdecel": 8000.1, "pcsdist": 1_700_000_003,
+                  "pcsgo": FLAG, "shiftmaster": FLAG, "capture": FLAG}),
+            (12, {"pcstgvel": 0, "mcstgvel": -0.3, "aioctr": 0xC000, "psoftlim": 2_147_000_000, "nsoftlim": 16_777_219,
+                  "stopfilt": 8, "exitfilt": 0}),
+            (12, {"mcstgvel": 20000.1, "pcstgpos": -1_000_000_001, "pcsgo": FLAG}),
+            (12, {"mcstgpos": 16_777_217, "mcsgo": FLAG, "mcsmaxvel": 12.3, "haltstep": 1, "haltmode": FLAG}),
+            (8, {"haltstep": 0, "ciraxis": FLAG, "cirpos": 2_100_000_001, "biciraxis": FLAG}),
+            (8, {"homepos": -2_147_000_001, "sethome": FLAG, "nsoftlim": -2_147_000_003}),
+            (6, {"mcsvel": 100.3, "pcsvel": -230.7, "ciraxis": 0}),
+            (6, {"run": 0}),
+        ],
+    ),
+    "far gears": (
+        "",
+        [
+            (20, {"vellim": 32767, "accellim": 32767, "mcsaccel": 2000.3, "mcsdecel": 3000.1, "master": 1,
+                  "gearsrc": address("curvel"), "gearratio": -4321.1, "engear": FLAG}),
+            (10, {"gearoutmod": FLAG, "gearoutvel": 30000.3, "engear": 0}),
+            (15, {"syntype": FLAG, "slaveabs": FLAG, "synsrc": address("curpos"), "synaxis": 1,
+                  "synsrcvar": 33_000_001, "slavedist": -1_800_000_001, "enasyn": FLAG, "startsyn": FLAG}),
+            (10, {"enasyn": 0, "syntype": 0, "synsrcvar": 7, "mcstgvel": 20000.3}),
+            (12, {"enasyn": FLAG, "startsyn": FLAG}),
+            (12, {"mcstgvel": 0, "encsfactor": 50000.3, "spin_handwheel": -7, "encpfactor": 40000.3,
+                  "gearsrc": address("mcsvel"), "gearratio": 300.3}),
+            (12, {"engear": FLAG, "poserrlim": 60001, "settlewin": 50003, "trackwin": 40001, "smooth": 3,
+                  "indexNum": 60003}),
+            (8, {"encsfactor": 1.3, "spin_handwheel": 7}),
+        ],
+    ),
+    "far home": (
+        "origin = [500, 560]\n",
+        [(120, {"highvel": 23.3, "lowvel": 1.7, "homeseq": 0x14 | 0x20 | 2, "homepos": 1_000_000_019,
+                "homestpos": 1_000_000_351, "mcsaccel": 2.3, "mcsdecel": 3.1, "gohome": FLAG})],
+    ),
 }  # fmt: skip
 # What the whole card does: what is written to it, or pushed into a queue, before so many cycles.
 CARD: dict[str, list[tuple[int, list[tuple[Any, ...]]]]] = {
@@ -159,6 +199,9 @@ CARD: dict[str, list[tuple[int, list[tuple[Any, ...]]]]] = {
         ),
         (12, [("hpause", 1)]),
         (12, [("hpause", 0), (CFIFO, 5, 6, 7)]),
+        (5, [(CFIFO, 401, -302, 203, 10, 20, 30)]),
+        (6, [("startgroup", 0)]),
+        (3, [("startgroup", FLAG)]),
         (10, [("emstop", 0x0010)]),
     ],
     "queue": [
@@ -194,6 +237,10 @@ SHOWN = (
 )  # fmt: skip
 NAMES = sorted({name for _, steps in SCENES.values() for _, given in steps for name in given} | set(SHOWN))
 NO_ROWS = {"spin_handwheel", "touch_probe", "homestpos", "biciraxis", "haltmode", "haltstep"}
+FLAGS = {
+    "mcsgo", "pcsgo", "mcstrack", "pcstrack", "shiftmaster", "engear", "gearoutmod", "ciraxis", "biciraxis", "enasyn",
+    "startsyn", "syntype", "slaveabs", "sethome", "gohome", "haltstep", "haltmode",
+}  # fmt: skip
 RECORDED = Path(__file__).parents[1] / "golden" / "imc" / "scenes.txt"
 
 
@@ -255,6 +302,29 @@ def test_the_third_axis_does_what_the_first_one_does(scene: str, request: pytest
         tracks.append(track)
     assert all((one == other).all() for one, other in zip(*tracks, strict=True))
     is_as_recorded(scene, written_down(scene, "A", tracks[0], ends), request)
+
+
+COMMANDED = ("curpos", "curvel", "mcspos", "pcspos", "encp", "error", "motion", "homed")
+
+
+@pytest.mark.covers(*(f"imc.param.{name}" for name in sorted(FLAGS - {"haltstep", "haltmode", "biciraxis"})))
+def test_any_number_but_0_sets_a_flag() -> None:
+    for name in ("gear", "gears", "ring", "home back", "ends", "far gears"):
+        axis_text, steps = SCENES[name]
+        tracks = []
+        for flag in (FLAG, 1, 0x2000):
+            card = ready_card(f"[[axis]]\n{axis_text}[[axis]]\n")
+            set_now(card, ("mcstgvel", 5, 1))
+            track = []
+            for cycles, given in steps:
+                for each, value in given.items():
+                    if each != "spin_handwheel":
+                        set_now(card, (each, flag if each in FLAGS and value == FLAG else value))
+                for _ in range(cycles):
+                    card.advance(1)
+                    track.append([card.read(each) for each in COMMANDED])
+            tracks.append(track)
+        assert tracks[0] == tracks[1] == tracks[2], name
 
 
 @pytest.mark.parametrize("scene", CARD)

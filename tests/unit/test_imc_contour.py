@@ -22,6 +22,7 @@ def group(card, *axes: int, cycles: int = 20) -> None:  # type: ignore[no-untype
     "imc.param.startgroup",
     "imc.param.groupnum",
 )
+@pytest.mark.covers("imc.param.contouring", "imc.param.curvel")
 def test_each_point_is_spread_evenly_over_its_cycles() -> None:
     card = ready_card()
     group(card, 2, 0, 1)
@@ -63,6 +64,7 @@ def test_contouring_shows_in_the_axes_of_the_group_while_points_are_carried_out(
     assert [card.read("curpos", i) for i in range(4)] == [0, -168, 0, 120]
 
 
+@pytest.mark.covers("imc.param.contouring")
 def test_an_empty_queue_ends_contouring_and_new_points_go_on() -> None:
     card = ready_card()
     group(card, 0, cycles=3)
@@ -81,6 +83,7 @@ def test_an_empty_queue_ends_contouring_and_new_points_go_on() -> None:
 
 
 @pytest.mark.covers("imc.param.vellim", "imc.param.error")
+@pytest.mark.covers("imc.param.moving", "imc.param.run")
 def test_too_large_a_displacement_is_a_speed_error() -> None:
     card = ready_card()
     set_now(card, ("vellim", 30))
@@ -101,6 +104,7 @@ def test_an_odd_displacement_arrives_whole() -> None:
 
 
 @pytest.mark.covers("imc.concept.capfifo", "imc.bit.encpctr.10", "imc.param.encpctr")
+@pytest.mark.covers("imc.param.mcsmaxvel")
 def test_probe_pulses_are_captured_while_capture_is_on() -> None:
     card = ready_card("[[axis]]\nprobe = { first = 105.0, pitch = 100.0 }\n")
     set_now(card, ("mcsmaxvel", 30))
@@ -125,21 +129,23 @@ def test_probe_pulses_are_captured_while_capture_is_on() -> None:
 
 
 @pytest.mark.covers("imc.param.capture", "imc.param.cappos")
-@pytest.mark.parametrize("name", ["capture", "capture2"])
-def test_a_write_captures_the_position_of_this_moment(name: str) -> None:
+@pytest.mark.parametrize(("name", "value"), [("capture", FLAG), ("capture2", 0), ("capture", 0)])
+@pytest.mark.covers("imc.param.curpos", "imc.param.encp", "imc.param.encpfactor", "imc.param.mcstgvel")
+def test_a_write_captures_the_position_of_this_moment(name: str, value: int) -> None:
     card = ready_card()
     set_now(card, ("encpfactor", 0.5))  # the encoder, not the command, is captured
     send(card, IFIFO, ("mcstgvel", 10))
     card.advance(33)
     here = card.read("encp")
     assert 0 < here < card.read("curpos")
-    send(card, IFIFO, (name, FLAG))
+    send(card, IFIFO, (name, value))
     card.advance(10)
     assert card.read("cappos") == here < card.read("encp")
     assert card.read_capture(0, 5) == ((here,), 0)
 
 
 @pytest.mark.covers("imc.param.encpctr")
+@pytest.mark.covers("imc.param.encp", "imc.param.mcstgvel")
 def test_a_touch_of_the_probe_captures_once() -> None:
     card = ready_card()
     set_now(card, ("encpctr", 0x400), ("mcstgvel", 5))
@@ -150,6 +156,7 @@ def test_a_touch_of_the_probe_captures_once() -> None:
     assert card.read_raw(address("counter")) == 1
 
 
+@pytest.mark.covers("imc.param.aioctr", "imc.param.curvel", "imc.param.error", "imc.param.startgroup")
 def test_an_axis_that_is_stopped_ends_the_contour_and_does_not_jump_later() -> None:
     card = ready_card("number_of_axes = 4\n[[axis]]\nlimit_positive = 70.0\n")
     set_now(card, ("aioctr", 0x3))
@@ -167,6 +174,9 @@ def test_an_axis_that_is_stopped_ends_the_contour_and_does_not_jump_later() -> N
     assert card.read("curpos") == 20
 
 
+@pytest.mark.covers(
+    "imc.param.contouring", "imc.param.curpos", "imc.param.curvel", "imc.param.run", "imc.param.startgroup"
+)
 def test_an_axis_out_of_run_keeps_nothing_of_the_contour_for_a_later_path() -> None:
     card = ready_card()
     group(card, 0, cycles=50)
@@ -183,6 +193,7 @@ def test_an_axis_out_of_run_keeps_nothing_of_the_contour_for_a_later_path() -> N
     assert card.read("curpos") == 100
 
 
+@pytest.mark.covers("imc.param.emstop", "imc.param.ena", "imc.param.error", "imc.param.run")
 def test_an_emergency_stop_ends_the_contour_for_good() -> None:
     card = ready_card()
     group(card, 0, cycles=4)
@@ -197,6 +208,7 @@ def test_an_emergency_stop_ends_the_contour_for_good() -> None:
     assert (card.read("curpos"), card.read("startgroup"), card.waiting_words(4) > 0) == (here, 0, True)
 
 
+@pytest.mark.covers("imc.param.curpos", "imc.param.startgroup")
 def test_a_contour_waits_for_an_axis_that_is_on_a_path() -> None:
     card = ready_card()
     enable_path(card, 0)

@@ -98,7 +98,7 @@ def _result(card: Card, command: str, immediate: bool, a: int, b: int) -> tuple[
     return card.read_raw(CELLS[result][2], 0, result // 16), _signed(compute(a, b), result)
 
 
-@pytest.mark.covers(*(f"imc.event.{command.name}" for command in EventCommand))
+@pytest.mark.covers(*(f"imc.event.{command.name}" for command in EventCommand), "imc.enum.IMC_EVENT_CMD")
 @pytest.mark.parametrize(("command", "immediate"), _names())
 def test_every_command_computes_in_twos_complement(command: str, immediate: bool) -> None:
     card = ready_card(number_of_axes=1)
@@ -277,6 +277,24 @@ def test_conditions_at_the_ends_of_the_numbers() -> None:
             assert edges == wanted & ~sum(1 << k for k, name in enumerate(NAMES) if name in held.split())
 
 
+@pytest.mark.covers("imc.concept.event_flags", "imc.etype.IMC_Allways", "imc.event.CMD_CMP32i")
+def test_a_conditional_event_does_not_change_what_the_next_one_tests() -> None:
+    card = ready_card(number_of_axes=1)
+    install(
+        card,
+        event("CMP32i", first=A32, constant=10),
+        event("CMP32i", "IF_Great", first=A32, constant=5000),  # less
+        event("ADD32i", "IF_Great", first=B32, constant=-60000, target=B32),  # negative
+        event("AND16i", "IF_Great", first=A16, constant=0, target=A16),  # 0
+        event("ADD32i", "IF_Great", first=R32, constant=3, target=R32),
+        event("ADD32i", "IF_Little", first=R32, constant=1000, target=R32),
+        event("ADD32i", "IF_Carry", first=R32, constant=20000, target=R32),
+    )
+    set_now(card, ("user32b1", 700))
+    card.advance(3)
+    assert card.read("user32b0") == 9
+
+
 @pytest.mark.covers("imc.concept.event_space")
 def test_several_conditional_events_test_the_same_unconditional_one() -> None:
     card = ready_card(number_of_axes=1)
@@ -312,6 +330,9 @@ def test_an_event_sets_a_flag_once_when_a_position_is_reached_or_in_every_cycle(
         assert card.read("user16b0") == again
 
 
+@pytest.mark.covers(
+    "imc.param.curpos", "imc.param.curvel", "imc.param.homepos", "imc.param.mcstgvel", "imc.param.sethome"
+)
 def test_an_event_stops_an_axis_and_sets_its_origin() -> None:
     card = ready_card()
     install(
@@ -328,7 +349,9 @@ def test_an_event_stops_an_axis_and_sets_its_origin() -> None:
     assert card.kernel.servo.actual[0] > 500
 
 
-@pytest.mark.covers("imc.param.events")
+@pytest.mark.covers(
+    "imc.param.events", "imc.etype.IMC_Allways", "imc.event.CMD_ADD32i", "imc.concept.event_space"
+)
 def test_the_space_holds_128_events_and_0_removes_them() -> None:
     card = ready_card()
     one = event("ADD32i", first=R32, constant=1, target=R32)
@@ -347,6 +370,7 @@ def test_the_space_holds_128_events_and_0_removes_them() -> None:
     assert (card.read("events"), card.read("user32b0")) == (0, before + 256)
 
 
+@pytest.mark.covers("imc.param.events", "imc.param.ticks")
 def test_a_destination_of_0_stores_nothing() -> None:
     card = ready_card()
     before = card.state.memory.copy()
@@ -362,6 +386,7 @@ def test_commands_and_types_are_numbered_in_the_manuals_order() -> None:
     assert [kind.value for kind in EventType] == list(range(15))
 
 
+@pytest.mark.covers("imc.param.events")
 def test_an_event_on_an_axis_that_is_not_there_does_nothing() -> None:
     card = ready_card(number_of_axes=2)
     before = card.state.memory.copy()
@@ -372,6 +397,7 @@ def test_an_event_on_an_axis_that_is_not_there_does_nothing() -> None:
 
 
 @pytest.mark.parametrize(("command", "bits"), [("SCA32i", 32), ("SCA48i", 48)])
+@pytest.mark.covers("imc.param.events", "imc.param.ticks")
 def test_a_card_may_take_factors_with_16_fraction_bits(command: str, bits: int) -> None:
     for value, factor in ((1_000_003, 65_536), (-77_777, 163_841), (1_234_567, -98_305), (-3, 1)):
         for text, fraction in (("S16.32", 32), ("S16.16", 16)):

@@ -47,6 +47,7 @@ def gear(card, ratio: float, source: int = CURVEL, master: int = 0, axis: int = 
 
 @pytest.mark.covers("imc.param.gearratio", "imc.param.mcsaccel", "imc.param.mcsdecel")
 @pytest.mark.covers("imc.param.engear", "imc.param.master", "imc.param.gearsrc", "imc.concept.gear_law")
+@pytest.mark.covers("imc.param.mcsslope", "imc.param.mcstgvel", "imc.param.mcsvel")
 def test_a_free_gear_ramps_to_ratio_times_the_source_and_follows_a_new_ratio() -> None:
     card = ready_card()
     send(card, IFIFO, ("mcstgvel", 10, 2))
@@ -66,6 +67,7 @@ def test_a_free_gear_ramps_to_ratio_times_the_source_and_follows_a_new_ratio() -
 
 
 @pytest.mark.covers("imc.param.gearratio", "imc.concept.gear_law")
+@pytest.mark.covers("imc.param.mcspos")
 def test_a_ratio_is_exact_over_any_time() -> None:
     card = ready_card()
     gear(card, 0)
@@ -87,6 +89,7 @@ def test_a_ratio_is_exact_over_any_time() -> None:
 @pytest.mark.parametrize(
     ("source", "moved"), [(CURVEL, 1100), (ENCPVEL, 1100), (MCSVEL, 1000), (PCSVEL, 100), (ENCSVEL, 7)]
 )
+@pytest.mark.covers("imc.param.shiftmaster")
 def test_a_gear_follows_the_parameter_that_it_points_to(source: int, moved: int) -> None:
     card = ready_card()
     set_now(card, ("shiftmaster", FLAG))
@@ -113,6 +116,7 @@ def test_phasing_of_a_master_does_not_reach_a_slave_of_its_main_system() -> None
 
 @pytest.mark.covers("imc.param.gearoutmod", "imc.param.gearoutvel", "imc.param.engear")
 @pytest.mark.parametrize(("mode", "speed", "after"), [(0, 3, 5), (FLAG, 3, 3), (FLAG, 0, 0)])
+@pytest.mark.covers("imc.param.mcsvel")
 def test_a_slave_that_leaves_keeps_its_speed_or_takes_another(mode: int, speed: float, after: float) -> None:
     card = ready_card()
     send(card, IFIFO, ("mcstgvel", 10), ("gearoutmod", mode, 1), ("gearoutvel", speed, 1))
@@ -167,6 +171,7 @@ def _in_distance(card, start: bool) -> None:  # type: ignore[no-untyped-def]
 @pytest.mark.covers(
     "imc.concept.gear_dist_law", "imc.param.synsrc", "imc.param.synaxis", "imc.param.synsrcvar"
 )
+@pytest.mark.covers("imc.param.enasyn")
 def test_a_gear_engages_over_a_distance_of_its_pacing_parameter() -> None:
     card = ready_card()
     _in_distance(card, start=True)
@@ -210,6 +215,7 @@ def test_an_event_starts_the_engagement() -> None:
 
 @pytest.mark.covers("imc.param.synsrc", "imc.param.synsrcvar", "imc.param.enasyn", "imc.param.startsyn")
 @pytest.mark.covers("imc.concept.gear_time_law")
+@pytest.mark.covers("imc.param.ticks")
 def test_a_gear_engages_over_a_time() -> None:
     card = ready_card()
     send(card, IFIFO, ("mcstgvel", 10))
@@ -235,6 +241,7 @@ def _timed(card, cycles: int, axis: int = 1) -> None:  # type: ignore[no-untyped
 @pytest.mark.covers("imc.param.synsrcvar", "imc.param.enasyn", "imc.param.startsyn")
 @pytest.mark.covers("imc.param.syntype", "imc.param.slavedist", "imc.param.slaveabs", "imc.concept.sync_laws")
 @pytest.mark.parametrize(("absolute", "distance", "end"), [(0, 5000, 5100), (FLAG, 5000, 5000), (0, -70, 30)])
+@pytest.mark.covers("imc.param.moving")
 def test_a_distance_is_moved_in_a_time_and_ends_at_rest(absolute: int, distance: int, end: int) -> None:
     card = ready_card()
     move_absolute(card, 100, 1)
@@ -259,6 +266,15 @@ def test_a_distance_is_moved_in_a_time_and_ends_at_rest(absolute: int, distance:
 )
 @pytest.mark.covers("imc.param.enasyn")
 @pytest.mark.parametrize("name", ["curpos", "encp", "mcspos", "pcspos", "encs"])
+@pytest.mark.covers(
+    "imc.param.encp",
+    "imc.param.encs",
+    "imc.param.mcspos",
+    "imc.param.mcstgvel",
+    "imc.param.pcspos",
+    "imc.param.pcstgvel",
+    "imc.param.startsyn",
+)
 def test_a_distance_is_moved_within_the_distance_of_another_parameter(name: str) -> None:
     card = ready_card()
     set_now(card, ("synsrc", address(name), 1), ("synaxis", 0, 1), ("synsrcvar", 2000, 1))
@@ -300,6 +316,7 @@ def test_a_velocity_is_reached_in_a_time_and_kept() -> None:
 
 
 @pytest.mark.covers("imc.param.synsrc", "imc.param.synaxis", "imc.param.synsrcvar", "imc.param.enasyn")
+@pytest.mark.covers("imc.param.mcspos")
 def test_a_velocity_is_reached_within_a_distance_of_another_axis() -> None:
     card = ready_card()
     set_now(card, ("synsrc", address("mcspos"), 1), ("synaxis", 2, 1), ("synsrcvar", 1000, 1))
@@ -327,6 +344,7 @@ def test_synchronous_motion_that_is_given_up_brakes() -> None:
     assert 500 < card.read("curpos", 1) < 2500
 
 
+@pytest.mark.covers("imc.param.curpos", "imc.param.curvel")
 def test_a_chain_of_gears_acts_within_the_cycle() -> None:
     card = ready_card()
     gear(card, 2, CURVEL, 0, 1)
@@ -378,6 +396,7 @@ STOPS: dict[str, Callable[[Card], None]] = {
 
 @pytest.mark.parametrize("stop", ["velocity 0", "event"])
 @pytest.mark.parametrize("pending", ["tgvel", "gear", "gear left", "distance"])
+@pytest.mark.covers("imc.param.slavedist", "imc.param.synsrcvar", "imc.param.syntype")
 def test_a_synchronous_motion_that_never_started_swallows_no_stop(pending: str, stop: str) -> None:
     card = ready_card()
     send(card, IFIFO, ("mcstgvel", 13, 1))
@@ -401,6 +420,7 @@ def test_a_synchronous_motion_that_never_started_swallows_no_stop(pending: str, 
 
 @pytest.mark.parametrize("stop", STOPS)
 @pytest.mark.parametrize("running", ["tgvel", "gear", "distance"])
+@pytest.mark.covers("imc.param.slavedist", "imc.param.synaxis", "imc.param.synsrc", "imc.param.syntype")
 def test_a_synchronous_motion_whose_source_stands_still_swallows_no_stop(running: str, stop: str) -> None:
     card = ready_card()
     send(card, IFIFO, ("mcstgvel", 13, 1))
@@ -448,6 +468,14 @@ def test_the_goal_may_come_in_a_later_instruction_than_the_change_of_the_source(
     assert card.read("mcsvel", 1) == 6
 
 
+@pytest.mark.covers(
+    "imc.param.clear",
+    "imc.param.slaveabs",
+    "imc.param.slavedist",
+    "imc.param.synsrc",
+    "imc.param.syntype",
+    "imc.param.ticks",
+)
 def test_clear_and_leaving_the_gear_end_a_synchronous_motion_so_that_the_next_one_starts() -> None:
     for name in ("clear", "engear"):
         card = ready_card()
@@ -483,6 +511,9 @@ def test_a_gear_that_waits_for_its_start_is_left_without_touching_a_move() -> No
     assert (card.read("curpos", 1), card.read("moving", 1)) == (1234, 0)
 
 
+@pytest.mark.covers(
+    "imc.param.enasyn", "imc.param.engear", "imc.param.run", "imc.param.startsyn", "imc.param.synsrcvar"
+)
 def test_a_coupling_that_cannot_begin_shows_that_it_was_refused() -> None:
     card = ready_card()
     set_now(card, ("run", 0, 1), ("enasyn", FLAG, 1), ("synsrcvar", 77, 1))
@@ -491,6 +522,9 @@ def test_a_coupling_that_cannot_begin_shows_that_it_was_refused() -> None:
     assert (card.read("engear", 1), card.read("startsyn", 1)) == (0, 0)
 
 
+@pytest.mark.covers(
+    "imc.param.engear", "imc.param.gearratio", "imc.param.gearsrc", "imc.param.master", "imc.param.mcsvel"
+)
 def test_a_gear_engaged_on_a_path_is_refused_and_behind_it_follows() -> None:
     for queue, follows in ((IFIFO, False), (PFIFO1, True)):
         card = ready_card()
@@ -510,6 +544,7 @@ def test_a_gear_engaged_on_a_path_is_refused_and_behind_it_follows() -> None:
 
 
 @pytest.mark.parametrize("mover", ["path", "contour"])
+@pytest.mark.covers("imc.param.group_x", "imc.param.groupnum", "imc.param.groupsmooth")
 def test_a_path_or_contour_takes_a_slave_out_of_its_gear(mover: str) -> None:
     card = ready_card()
     send(card, IFIFO, ("mcstgvel", 9))
@@ -530,6 +565,7 @@ def test_a_path_or_contour_takes_a_slave_out_of_its_gear(mover: str) -> None:
 
 
 @pytest.mark.covers("imc.param.mcsdecel", "imc.param.startsyn")
+@pytest.mark.covers("imc.param.pcsmoving")
 def test_taking_startsyn_back_brakes_with_the_rate_of_the_axis() -> None:
     card = ready_card()
     set_now(card, ("syntype", FLAG, 1), ("slavedist", 5000, 1), ("mcsdecel", 2, 1))
@@ -545,6 +581,7 @@ def test_taking_startsyn_back_brakes_with_the_rate_of_the_axis() -> None:
     assert place + speed * speed / 4 - speed < card.read("curpos", 1) < place + speed * speed / 4 + speed
 
 
+@pytest.mark.covers("imc.param.error", "imc.param.stopfilt")
 def test_a_slave_whose_move_cannot_be_leaves_the_gear_and_stops() -> None:
     card = ready_card()
     set_now(card, ("stopfilt", 0, 1), ("mcstgvel", 10))
@@ -555,3 +592,21 @@ def test_a_slave_whose_move_cannot_be_leaves_the_gear_and_stops() -> None:
     card.advance(20)
     assert (card.read("error", 1), card.read("engear", 1), card.read("mcsvel", 1)) == (0x200, 0, 0)
     assert card.read("mcsvel", 0) == 10
+
+
+@pytest.mark.covers("imc.param.synsrc", "imc.param.synsrcvar", "imc.param.ciraxis", "imc.concept.sync_laws")
+@pytest.mark.parametrize("source", ["curpos", "mcspos", "encp"])
+@pytest.mark.parametrize("speed", [7, -7])
+def test_what_a_ring_axis_paces_does_not_notice_its_turns(source: str, speed: int) -> None:
+    card = ready_card()
+    set_now(card, ("cirpos", 90), ("ciraxis", FLAG), ("mcstgvel", speed), ("mcsaccel", 10))
+    card.advance(5)
+    pace = (("synsrc", address(source), 2), ("synaxis", 0, 2), ("synsrcvar", 280, 2))
+    set_now(
+        card, *pace, ("syntype", FLAG, 2), ("slavedist", 1000, 2), ("enasyn", FLAG, 2), ("startsyn", FLAG, 2)
+    )
+    card.advance(20)  # 140 pulses, more than a turn: half of the way, with a cubic that is symmetric
+    assert card.read("mcspos", 2) == pytest.approx(500, abs=40)
+    assert card.read("startsyn", 2) == FLAG
+    card.advance(22)
+    assert (card.read("mcspos", 2), card.read("startsyn", 2)) == (1000, 0)

@@ -137,6 +137,7 @@ def test_index_pulses_alone_count_from_the_start(negative: bool, number: int, pu
 @pytest.mark.covers("imc.param.homepos")
 @pytest.mark.covers("imc.const.stop")
 @pytest.mark.parametrize("returns", [0, 1, 2])
+@pytest.mark.covers("imc.param.mcsgo", "imc.param.poserr")
 def test_it_can_go_to_a_place_in_the_end(returns: int) -> None:
     card = ready_card(AXIS)
     set_now(card, ("homestpos", -250), ("homepos", 100))
@@ -151,6 +152,7 @@ def test_it_can_go_to_a_place_in_the_end(returns: int) -> None:
 @pytest.mark.parametrize("index", [0, 1])
 @pytest.mark.parametrize("returns", [0, 1, 2])
 @pytest.mark.parametrize("top", [0, 55])
+@pytest.mark.covers("imc.param.mcsdecel", "imc.param.mcsmaxvel")
 def test_the_closing_move_has_the_speed_of_the_last_stage_whatever_mcsmaxvel_is(
     returns: int, index: int, top: int
 ) -> None:
@@ -166,6 +168,7 @@ def test_the_closing_move_has_the_speed_of_the_last_stage_whatever_mcsmaxvel_is(
 
 @pytest.mark.covers("imc.param.highvel")
 @pytest.mark.parametrize("top", [0, 55])
+@pytest.mark.covers("imc.param.lowvel", "imc.param.mcsmaxvel")
 def test_the_closing_move_after_index_pulses_alone_has_highvel(top: int) -> None:
     card = ready_card(AXIS)
     set_now(card, ("homestpos", 2222), ("mcsmaxvel", top), ("highvel", 7), ("lowvel", 3))
@@ -189,6 +192,7 @@ def test_the_known_value_of_homeseq_searches_the_switch_in_positive_direction() 
     assert origin(card) == 5000
 
 
+@pytest.mark.covers("imc.param.gohome")
 def test_a_search_can_be_given_up() -> None:
     card = ready_card(AXIS)
     home(card)
@@ -200,6 +204,7 @@ def test_a_search_can_be_given_up() -> None:
     assert 900 < card.read("curpos") < 1100
 
 
+@pytest.mark.covers("imc.param.aioctr", "imc.param.error", "imc.param.gohome")
 def test_a_search_that_runs_into_a_limit_ends_without_an_origin() -> None:
     card = ready_card("[[axis]]\norigin = [5000.0, 5600.0]\nlimit_negative = -300.0\n")
     set_now(card, ("aioctr", 0x000F))
@@ -210,6 +215,7 @@ def test_a_search_that_runs_into_a_limit_ends_without_an_origin() -> None:
     assert -360 <= card.read("curpos") < -300
 
 
+@pytest.mark.covers("imc.param.highvel")
 def test_a_switch_that_is_passed_within_a_cycle_is_found() -> None:
     card = ready_card("[[axis]]\norigin = [5001.0, 5004.0]\n")
     set_now(card, ("highvel", 50))
@@ -218,6 +224,7 @@ def test_a_switch_that_is_passed_within_a_cycle_is_found() -> None:
     assert origin(card) == 5001
 
 
+@pytest.mark.covers("imc.param.poserr")
 def test_with_a_lagging_drive_the_origin_is_where_the_encoder_was_at_the_edge() -> None:
     card = ready_card("[[axis]]\norigin = [5000.0, 5600.0]\nlag_s = 0.005\ngain = 30.0\n")
     home(card, go_to=True)
@@ -229,6 +236,7 @@ def test_with_a_lagging_drive_the_origin_is_where_the_encoder_was_at_the_edge() 
 
 
 @pytest.mark.parametrize("lacking", [("run", 0), ("highvel", 0)])
+@pytest.mark.covers("imc.param.gohome", "imc.param.highvel")
 def test_a_search_that_cannot_begin_takes_its_flag_back(lacking: tuple[str, float]) -> None:
     card = ready_card(AXIS)
     set_now(card, ("highvel", 7), lacking)
@@ -239,6 +247,7 @@ def test_a_search_that_cannot_begin_takes_its_flag_back(lacking: tuple[str, floa
     assert (card.read("gohome"), card.read("curpos")) == (0, 0)
 
 
+@pytest.mark.covers("imc.param.highvel")
 def test_any_value_but_0_starts_a_search_and_shows_as_a_flag() -> None:
     card = ready_card(AXIS)
     set_now(card, ("highvel", 7))
@@ -250,6 +259,7 @@ def test_any_value_but_0_starts_a_search_and_shows_as_a_flag() -> None:
 
 
 @pytest.mark.covers("imc.param.encpfactor", "imc.param.homepos")
+@pytest.mark.covers("imc.param.encp")
 def test_the_origin_that_is_passed_counts_in_the_scale_of_the_encoder() -> None:
     card = ready_card(AXIS + "counts_per_pulse = 4.0\n")
     set_now(card, ("encpfactor", 0.375), ("homepos", 230))

@@ -21,6 +21,7 @@ def program() -> Iterator[Program]:
 
 
 @pytest.mark.covers("imc.IMC_SetParam16", "imc.IMC_SetParam32", "imc.IMC_SetParam48", "imc.type.IMC16")
+@pytest.mark.covers("imc.param.gearratio")
 def test_width_of_a_write_decides_which_words_change(program: Program) -> None:
     card = program.card
     program.ok(lib.IMC_SetParam32, lib.mcstgposLoc, 0x00010002, 0, IF)
@@ -57,6 +58,7 @@ def test_width_of_a_write_decides_which_words_change(program: Program) -> None:
         ("mcstrack", -1), ("user32b7", 2_000_000_000),
     ],
 )  # fmt: skip
+@pytest.mark.covers("imc.param.gearoutvel", "imc.param.mcstgpos", "imc.param.mcstrack", "imc.param.stopfilt")
 def test_a_number_is_written_and_read_with_its_sign(program: Program, name: str, raw: int) -> None:
     axis = 3 if name in ("mcstgpos", "gearoutvel", "gearratio", "stopfilt", "mcstrack") else 0
     program.set(name, raw, axis)
@@ -64,6 +66,7 @@ def test_a_number_is_written_and_read_with_its_sign(program: Program, name: str,
     assert program.get(name, axis) == raw
 
 
+@pytest.mark.covers("imc.IMC_SetParam32", "imc.param.gohome", "imc.param.homepos")
 def test_two_flags_beside_each_other_are_both_set_by_a_wide_write(program: Program) -> None:
     program.set("homepos", 4321)
     program.ok(lib.IMC_SetParam32, lib.gohomeLoc, -1, 0, IF)  # sethome is the next word
@@ -74,6 +77,7 @@ def test_two_flags_beside_each_other_are_both_set_by_a_wide_write(program: Progr
 @pytest.mark.covers(
     "imc.IMC_GetParam16", "imc.IMC_GetParam32", "imc.IMC_GetParam48", "imc.type.IMC32", "imc.type.__int64"
 )
+@pytest.mark.covers("imc.param.gearratio", "imc.param.mcstgpos")
 def test_width_of_a_read_decides_what_is_seen(program: Program) -> None:
     program.card.write("mcstgpos", -7, axis=1)
     program.card.write("gearratio", -0.5, axis=1)
@@ -88,6 +92,7 @@ def test_width_of_a_read_decides_what_is_seen(program: Program) -> None:
 
 
 @pytest.mark.covers("imc.IMC_SetMulParam")
+@pytest.mark.covers("imc.param.mcsgo", "imc.param.mcspos", "imc.param.mcstgpos")
 def test_several_parameters_are_written_in_the_same_cycle(program: Program) -> None:
     go = [
         lib.WR_MUL_DES.of(at, axis, words, value)
@@ -154,6 +159,23 @@ def test_a_wait_holds_its_queue_and_no_other(program: Program) -> None:
     assert shown == list(range(50, 0, -1))
     program.run(2)
     assert program.get("user16b0") == 1
+
+
+@pytest.mark.covers("imc.IMC_WaitTime", "imc.IMC_WaitParam", "imc.IMC_WaitParamBit", "imc.IMC_WaitParamMask")
+def test_a_long_wait_is_shown_with_all_its_time(program: Program) -> None:
+    for name, arguments in (
+        ("IMC_WaitTime", (2_000_000_003,)),
+        ("IMC_WaitParam", (lib.user16b0Loc, 5, 1_900_000_005, 0)),
+        ("IMC_WaitParamBit", (lib.user16b0Loc, 5, 1, 1_800_000_007, 0)),
+        ("IMC_WaitParamMask", (lib.user16b0Loc, 5, 1, 1_700_000_009, 0)),
+    ):
+        for fifo, shown in ((Q, "qwaittime"), (P1, "pwaittime1"), (P2, "pwaittime2")):
+            program.card.write("startpath1", -1)
+            program.card.write("startpath2", -1)
+            program.ok(getattr(lib, name), *arguments, fifo)
+            program.run(3)
+            assert program.get(shown) == next(each for each in arguments if each > 1 << 20) - 2
+            program.ok(lib.IMC_ClearFIFO, fifo)
 
 
 @pytest.mark.covers("imc.IMC_WaitTime")
@@ -302,6 +324,7 @@ def arc_call(name: str, clockwise: bool) -> tuple[object, ...]:
         for speeds in ("", "WithVel")
     ],
 )
+@pytest.mark.covers("imc.param.mcspos")
 def test_arcs(program: Program, name: str, clockwise: bool) -> None:
     third = name not in ("IMC_AddArc", "IMC_AddArcWithVel")
     for axis, place in enumerate(START):
@@ -376,6 +399,7 @@ def test_contour_points_are_spread_over_their_cycles(program: Program) -> None:
 
 @pytest.mark.covers("imc.event.CMD_CMP32i", "imc.event.CMD_SET16", "imc.concept.event_flags")
 @pytest.mark.covers("imc.IMC_InstallEvent")
+@pytest.mark.covers("imc.IMC_MoveVelocity")
 def test_an_event_starts_something_when_a_position_is_reached(program: Program) -> None:
     reached = [
         lib.EventInfo.of(lib.CMD_CMP32i, src1=(lib.curposLoc, 0), src2=1000),
@@ -411,6 +435,7 @@ def test_the_card_holds_128_events(program: Program) -> None:
 
 @pytest.mark.covers("imc.IMC_GetCapData")
 @pytest.mark.covers("imc.concept.rbfifo")
+@pytest.mark.covers("imc.IMC_WaitTime")
 def test_reading_back_needs_no_queue(program: Program) -> None:
     for fifo in (Q, P1, P2):
         program.ok(lib.IMC_WaitTime, 0, fifo)
@@ -424,6 +449,7 @@ def test_reading_back_needs_no_queue(program: Program) -> None:
 
 @pytest.mark.covers("imc.IMC_SetParamBit", "imc.bit.encpctr.10", "imc.concept.capfifo", "imc.param.encpctr")
 @pytest.mark.covers("imc.IMC_GetCapData")
+@pytest.mark.covers("imc.IMC_MoveVelocity")
 def test_the_probe_captures_while_it_is_let(program: Program) -> None:
     program.ok(lib.IMC_MoveVelocity, 10 * 65536, 0, IF)
     program.run(50)

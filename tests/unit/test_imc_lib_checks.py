@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
+from itertools import chain
 from typing import Any
 
 import pytest
@@ -88,6 +89,18 @@ PATHS: dict[str, tuple[Any, ...]] = {
 }
 
 
+def functions(*tables: Iterable[str]) -> list[str]:
+    """Return the rows of functions; the manual describes some under another name."""
+    return [f"imc.{MANUAL_NAMES.get(name, name)}" for name in sorted(set(chain(*tables)))]
+
+
+MANUAL_NAMES = {
+    "IMC_MoveInTime": "IMC_MoveTP", "IMC_MoveInDist": "IMC_MovePP", "IMC_TgvelInTime": "IMC_MoveTV",
+    "IMC_TgvelInDist": "IMC_MovePV", "IMC_PutContourData": "IMC_AddContourData",
+}  # fmt: skip
+
+
+@pytest.mark.covers(*functions(SENDERS, WAITERS, PATHS), "imc.status.IMC_INVALID_FIFO", "imc.enum.FIFO_SEL")
 @pytest.mark.covers(
     "imc.fifo.SEL_IFIFO",
     "imc.fifo.SEL_QFIFO",
@@ -110,7 +123,8 @@ def test_queues_that_take_an_instruction(
     assert len(SENDERS) + len(WAITERS) + len(PATHS) == 40
 
 
-@pytest.mark.covers("imc.IMC_ClearFIFO")
+@pytest.mark.covers("imc.IMC_ClearFIFO", "imc.IMC_AddContourData", "imc.concept.cfifo", "imc.enum.FIFO_SEL")
+@pytest.mark.covers(*(f"imc.fifo.SEL_{name}" for name in ("IFIFO", "QFIFO", "PFIFO1", "PFIFO2", "CFIFO")))
 def test_contour_points_go_to_queues_of_points_only(card: ToldCard, handle: lib.IMC_HANDLE) -> None:
     for fifo in (-1, I, Q, 5):
         assert lib.IMC_PutContourData(handle, [1, 2], 2, fifo) == lib.IMC_INVALID_FIFO
@@ -123,7 +137,8 @@ def test_contour_points_go_to_queues_of_points_only(card: ToldCard, handle: lib.
     assert card.cleared == list(range(5))
 
 
-@pytest.mark.covers("imc.status.IMC_FIFO_FULL")
+@pytest.mark.covers("imc.status.IMC_FIFO_FULL", *functions(SENDERS, WAITERS, PATHS))
+@pytest.mark.covers("imc.IMC_AddContourData", "imc.IMC_ClearFIFO")
 def test_a_full_queue_refuses_and_nothing_is_sent_again(card: ToldCard, handle: lib.IMC_HANDLE) -> None:
     card.full = True
     for name, arguments in {**SENDERS, **WAITERS, **PATHS}.items():
@@ -138,7 +153,8 @@ AXIS_LAST = sorted(set(SENDERS) - {"IMC_SetMulParam", "IMC_InstallEvent"})
 
 @pytest.mark.covers("imc.status.IMC_INVALID_AXIS")
 @pytest.mark.covers("imc.IMC_GetCapData", "imc.IMC_GetParamBit")
-@pytest.mark.covers("imc.const.AXISNUM")
+@pytest.mark.covers("imc.const.AXISNUM", *functions(AXIS_LAST))
+@pytest.mark.covers("imc.IMC_AddContourData")
 def test_axes_that_the_card_does_not_have(card: ToldCard, handle: lib.IMC_HANDLE) -> None:
     for name in AXIS_LAST:
         for axis in (-1, 4):
@@ -165,6 +181,18 @@ def test_axes_that_the_card_does_not_have(card: ToldCard, handle: lib.IMC_HANDLE
 
 
 @pytest.mark.covers("imc.IMC_GetParam32", "imc.IMC_SetParam16")
+@pytest.mark.covers(
+    "imc.IMC_GearFree",
+    "imc.IMC_GearInDist",
+    "imc.IMC_GearInTime",
+    "imc.IMC_GetCapData",
+    "imc.IMC_GetParam16",
+    "imc.IMC_GetParam48",
+    "imc.IMC_GetParamBit",
+    "imc.IMC_HandWheel",
+    "imc.IMC_MovePP",
+    "imc.IMC_MovePV",
+)
 def test_the_axis_of_a_parameter_of_the_card_does_not_matter(card: ToldCard, handle: lib.IMC_HANDLE) -> None:
     assert lib.IMC_SetParam16(handle, lib.emstopLoc, 0x10, 99, I) == lib.IMC_OK
     assert lib.IMC_GetParam32(handle, lib.ticksLoc, -1)[0] == lib.IMC_OK
@@ -180,6 +208,7 @@ def test_the_axis_of_a_parameter_of_the_card_does_not_matter(card: ToldCard, han
     "imc.IMC_SetParam16",
     "imc.IMC_TurnParamBit",
 )
+@pytest.mark.covers("imc.IMC_WaitParam", "imc.param.emstop")
 def test_addresses_without_a_parameter(card: ToldCard, handle: lib.IMC_HANDLE) -> None:
     for at in (-1, 0, 3, 9, 24, 900, 1024, 40000):
         assert lib.IMC_SetParam16(handle, at, 1, 0, I) == lib.IMC_INVALID_PARAM, at
@@ -194,6 +223,17 @@ def test_addresses_without_a_parameter(card: ToldCard, handle: lib.IMC_HANDLE) -
 @pytest.mark.covers("imc.status.IMC_PARAM_READ_ONLY")
 @pytest.mark.covers("imc.IMC_GetParam16")
 @pytest.mark.parametrize("name", ["mcsmoving", "curpos", "naxis", "fwversion", "gin1", "poserr"])
+@pytest.mark.covers(
+    "imc.IMC_GetParam32",
+    "imc.IMC_GetParamBit",
+    "imc.IMC_SetParam16",
+    "imc.IMC_TurnParamBit",
+    "imc.IMC_WaitParam",
+)
+@pytest.mark.covers(
+    *(f"imc.IMC_{name}" for name in ("SetParam16", "SetParam32", "SetParam48", "SetParamBit", "ORXORParam")),
+    *(f"imc.IMC_{name}" for name in ("TurnParamBit", "SetMulParam", "InstallEvent", "GetParam16")),
+)
 def test_parameters_that_cannot_be_written(card: ToldCard, handle: lib.IMC_HANDLE, name: str) -> None:
     at = PARAMETERS[name].address
     for refused in (
@@ -211,63 +251,67 @@ def test_parameters_that_cannot_be_written(card: ToldCard, handle: lib.IMC_HANDL
     assert card.told == []
 
 
+bit, out = lib.IMC_INVALID_PARAM, lib.IMC_OUT_OF_RANGE
+event = lib.EventInfo.of(lib.CMD_SET16, src2=1, dest=(307, 0))
+nan = float("nan")
+REFUSED: list[tuple[lib.IMC_STATUS, str, tuple[Any, ...]]] = [
+    (bit, "IMC_SetParamBit", (562, 16, 1, 0, I)),
+    (bit, "IMC_SetParamBit", (562, -1, 1, 0, I)),
+    (out, "IMC_SetParamBit", (562, 0, 2, 0, I)),
+    (bit, "IMC_TurnParamBit", (562, 16, 0, I)),
+    (bit, "IMC_WaitParamBit", (562, 16, 1, 0, 0, Q)),
+    (out, "IMC_WaitParamBit", (562, 0, -1, 0, 0, Q)),
+    (out, "IMC_SetParam16", (12, 1 << 16, 0, I)),
+    (out, "IMC_SetParam32", (12, -(1 << 31) - 1, 0, I)),
+    (out, "IMC_SetParam48", (175, 1 << 48, 0, I)),
+    (out, "IMC_SetMulParam", (many((12, 0, 1)), 0, I)),
+    (out, "IMC_SetMulParam", (many((12, 0, 1)), 2, I)),
+    (out, "IMC_SetMulParam", (many((12, 0, 4)), 1, I)),
+    (out, "IMC_SetMulParam", (many((12, 0, 0)), 1, I)),
+    (lib.IMC_INVALID_AXIS, "IMC_SetMulParam", (many((12, 0, 1), (12, 4, 1)), 2, I)),
+    (bit, "IMC_SetMulParam", (many((12, 0, 1), (9, 0, 1)), 2, I)),
+    (bit, "IMC_SetMulParam", (None, 1, I)),
+    (out, "IMC_GetMulParam", (many((12, 0, 1)), 0)),
+    (out, "IMC_GetMulParam", (many(*[(12, 0, 1)] * 33), 33)),
+    (out, "IMC_InstallEvent", ([event] * 40, 0, I)),
+    (out, "IMC_InstallEvent", ([event] * 40, 32, I)),
+    (out, "IMC_InstallEvent", ([event], 2, I)),
+    (out, "IMC_AddLineN", (line(0), P1)),
+    (out, "IMC_AddLineN", (line(5), P1)),
+    (out, "IMC_AddLineNWithVel", (fast(17), P1)),
+    (out, "IMC_AddArcLine", (line(1), P1)),
+    (out, "IMC_AddArc", (0, 0, 1, 1, 2, P1)),
+    (out, "IMC_AddSpiral", (0, 0, 0, 1, 1, -1, P1)),
+    (bit, "IMC_AddLineN", (None, P1)),
+    (out, "IMC_PutContourData", ([0] * 127, 127, C)),
+    (out, "IMC_PutContourData", ([0], 0, C)),
+    (out, "IMC_PutContourData", ([0], 2, C)),
+    (out, "IMC_PutContourData", ([32768], 1, C)),
+    (out, "IMC_GearFree", (32768.0, 1, 0, 0, I)),
+    (out, "IMC_GearFree", (-32768.1, 1, 0, 0, I)),
+    (out, "IMC_GearFree", (nan, 1, 0, 0, I)),
+    (out, "IMC_GearFree", (1.0, 1, 5, 0, I)),
+    (out, "IMC_GearInDist", (1.0, 1, 0, 1, 5, 1000, 0, I)),
+    (out, "IMC_GearInDist", (1e300, 1, 0, 1, 2, 1000, 0, I)),
+    (out, "IMC_GearInDist", (-1e300, 1, 0, 1, 2, 1000, 0, I)),
+    (out, "IMC_GearInDist", (10**400, 1, 0, 1, 2, 1000, 0, I)),
+    (out, "IMC_GearInDist", (1.0, 1, 0, 1, 0, 0, 0, I)),
+    (out, "IMC_GearInTime", (1.0, 1, -1, 1000, 0, I)),
+    (out, "IMC_HandWheel", (float("inf"), 1, 0, I)),
+    (out, "IMC_MoveInTime", (0, 100, 0, I)),
+    (out, "IMC_MoveInDist", (-5, 1, 100, 0, I)),
+    (out, "IMC_TgvelInTime", (0, 65536, 0, I)),
+    (out, "IMC_TgvelInDist", (0, 1, 65536, 0, I)),
+]
+
+
+@pytest.mark.covers(*functions(name for _, name, _ in REFUSED))
 @pytest.mark.covers("imc.status.IMC_OUT_OF_RANGE")
 @pytest.mark.covers("imc.IMC_GetCapData")
 @pytest.mark.covers("imc.const.limits")
+@pytest.mark.covers("imc.IMC_GetParam16", "imc.IMC_ORXORParam")
 def test_numbers_out_of_range(card: ToldCard, handle: lib.IMC_HANDLE) -> None:
-    bit, out = lib.IMC_INVALID_PARAM, lib.IMC_OUT_OF_RANGE
-    event = lib.EventInfo.of(lib.CMD_SET16, src2=1, dest=(307, 0))
-    nan = float("nan")
-    refused: list[tuple[lib.IMC_STATUS, str, tuple[Any, ...]]] = [
-        (bit, "IMC_SetParamBit", (562, 16, 1, 0, I)),
-        (bit, "IMC_SetParamBit", (562, -1, 1, 0, I)),
-        (out, "IMC_SetParamBit", (562, 0, 2, 0, I)),
-        (bit, "IMC_TurnParamBit", (562, 16, 0, I)),
-        (bit, "IMC_WaitParamBit", (562, 16, 1, 0, 0, Q)),
-        (out, "IMC_WaitParamBit", (562, 0, -1, 0, 0, Q)),
-        (out, "IMC_SetParam16", (12, 1 << 16, 0, I)),
-        (out, "IMC_SetParam32", (12, -(1 << 31) - 1, 0, I)),
-        (out, "IMC_SetParam48", (175, 1 << 48, 0, I)),
-        (out, "IMC_SetMulParam", (many((12, 0, 1)), 0, I)),
-        (out, "IMC_SetMulParam", (many((12, 0, 1)), 2, I)),
-        (out, "IMC_SetMulParam", (many((12, 0, 4)), 1, I)),
-        (out, "IMC_SetMulParam", (many((12, 0, 0)), 1, I)),
-        (lib.IMC_INVALID_AXIS, "IMC_SetMulParam", (many((12, 0, 1), (12, 4, 1)), 2, I)),
-        (bit, "IMC_SetMulParam", (many((12, 0, 1), (9, 0, 1)), 2, I)),
-        (bit, "IMC_SetMulParam", (None, 1, I)),
-        (out, "IMC_GetMulParam", (many((12, 0, 1)), 0)),
-        (out, "IMC_GetMulParam", (many(*[(12, 0, 1)] * 33), 33)),
-        (out, "IMC_InstallEvent", ([event] * 40, 0, I)),
-        (out, "IMC_InstallEvent", ([event] * 40, 32, I)),
-        (out, "IMC_InstallEvent", ([event], 2, I)),
-        (out, "IMC_AddLineN", (line(0), P1)),
-        (out, "IMC_AddLineN", (line(5), P1)),
-        (out, "IMC_AddLineNWithVel", (fast(17), P1)),
-        (out, "IMC_AddArcLine", (line(1), P1)),
-        (out, "IMC_AddArc", (0, 0, 1, 1, 2, P1)),
-        (out, "IMC_AddSpiral", (0, 0, 0, 1, 1, -1, P1)),
-        (bit, "IMC_AddLineN", (None, P1)),
-        (out, "IMC_PutContourData", ([0] * 127, 127, C)),
-        (out, "IMC_PutContourData", ([0], 0, C)),
-        (out, "IMC_PutContourData", ([0], 2, C)),
-        (out, "IMC_PutContourData", ([32768], 1, C)),
-        (out, "IMC_GearFree", (32768.0, 1, 0, 0, I)),
-        (out, "IMC_GearFree", (-32768.1, 1, 0, 0, I)),
-        (out, "IMC_GearFree", (nan, 1, 0, 0, I)),
-        (out, "IMC_GearFree", (1.0, 1, 5, 0, I)),
-        (out, "IMC_GearInDist", (1.0, 1, 0, 1, 5, 1000, 0, I)),
-        (out, "IMC_GearInDist", (1e300, 1, 0, 1, 2, 1000, 0, I)),
-        (out, "IMC_GearInDist", (-1e300, 1, 0, 1, 2, 1000, 0, I)),
-        (out, "IMC_GearInDist", (10**400, 1, 0, 1, 2, 1000, 0, I)),
-        (out, "IMC_GearInDist", (1.0, 1, 0, 1, 0, 0, 0, I)),
-        (out, "IMC_GearInTime", (1.0, 1, -1, 1000, 0, I)),
-        (out, "IMC_HandWheel", (float("inf"), 1, 0, I)),
-        (out, "IMC_MoveInTime", (0, 100, 0, I)),
-        (out, "IMC_MoveInDist", (-5, 1, 100, 0, I)),
-        (out, "IMC_TgvelInTime", (0, 65536, 0, I)),
-        (out, "IMC_TgvelInDist", (0, 1, 65536, 0, I)),
-    ]
-    for status, name, arguments in refused:
+    for status, name, arguments in REFUSED:
         assert getattr(lib, name)(handle, *arguments) == status, (name, arguments)
     for rdnum in (-1, 121):
         assert lib.IMC_GetCapData(handle, rdnum, 0) == (out, [], 0, 0)
@@ -275,11 +319,17 @@ def test_numbers_out_of_range(card: ToldCard, handle: lib.IMC_HANDLE) -> None:
 
 
 @pytest.mark.covers("imc.IMC_AddLineN", "imc.IMC_GetMulParam", "imc.IMC_SetParam16", "imc.IMC_SetParamBit")
-def test_the_largest_that_is_taken(handle: lib.IMC_HANDLE) -> None:
+@pytest.mark.covers(
+    "imc.const.limits", "imc.IMC_GetCapData", "imc.IMC_AddContourData", "imc.IMC_InstallEvent"
+)
+@pytest.mark.covers("imc.type.IMCFLOAT", "imc.IMC_GearFree")
+def test_the_largest_that_is_taken(card: ToldCard, handle: lib.IMC_HANDLE) -> None:
     event = lib.EventInfo.of(lib.CMD_SET16, src2=1, dest=(307, 0))
     assert lib.IMC_GetMulParam(handle, many(*[(12, 0, 3)] * 32), 32) == lib.IMC_OK
     assert lib.IMC_InstallEvent(handle, [event] * 31, 31, I) == lib.IMC_OK
-    assert lib.IMC_PutContourData(handle, [-32768] * 126, 126, C) == lib.IMC_OK
+    points = [(-1) ** k * 32767 - k % 2 for k in range(126)]
+    assert lib.IMC_PutContourData(handle, points, 126, C) == lib.IMC_OK
+    assert card.points == points
     assert lib.IMC_GetCapData(handle, 120, 0) == (lib.IMC_OK, [], 0, 0)
     assert lib.IMC_AddLineN(handle, line(4), P1) == lib.IMC_OK
     assert lib.IMC_GearFree(handle, 32767.999999999767, 3, 4, 0, I) == lib.IMC_OK
@@ -287,6 +337,14 @@ def test_the_largest_that_is_taken(handle: lib.IMC_HANDLE) -> None:
     assert lib.IMC_SetParamBit(handle, 562, 15, 1, 3, I) == lib.IMC_OK
 
 
+@pytest.mark.covers(
+    "imc.IMC_AddLineN",
+    "imc.IMC_GearFree",
+    "imc.IMC_GetCapData",
+    "imc.IMC_GetMulParam",
+    "imc.IMC_SetParam16",
+    "imc.IMC_SetParamBit",
+)
 def test_contour_data_are_whole_points(card: ToldCard, handle: lib.IMC_HANDLE) -> None:
     card.memory[lib.groupnumLoc, 0] = 3
     assert lib.IMC_PutContourData(handle, list(range(30)), 30, C) == lib.IMC_OK
@@ -295,6 +353,7 @@ def test_contour_data_are_whole_points(card: ToldCard, handle: lib.IMC_HANDLE) -
 
 
 @pytest.mark.covers("imc.IMC_InstallEvent")
+@pytest.mark.covers("imc.param.groupnum")
 def test_events_that_do_not_fit_any_more(card: ToldCard, handle: lib.IMC_HANDLE) -> None:
     event = lib.EventInfo.of(lib.CMD_SET16, src2=1, dest=(307, 0))
     card.room_for_events = 3
@@ -326,6 +385,7 @@ def test_events_that_mean_nothing(
 
 
 @pytest.mark.covers("imc.IMC_GetMulParam")
+@pytest.mark.covers("imc.IMC_InstallEvent")
 def test_a_refused_read_leaves_its_structures_alone(handle: lib.IMC_HANDLE) -> None:
     elements = many((12, 0, 2), (9, 0, 2))
     elements[0].data[0] = 77
@@ -333,6 +393,7 @@ def test_a_refused_read_leaves_its_structures_alone(handle: lib.IMC_HANDLE) -> N
     assert elements[0].data[0] == 77
 
 
+@pytest.mark.covers("imc.IMC_GetMulParam")
 def test_points_for_a_path_queue_are_an_instruction_of_whole_points(
     card: ToldCard, handle: lib.IMC_HANDLE
 ) -> None:
@@ -348,6 +409,7 @@ def test_points_for_a_path_queue_are_an_instruction_of_whole_points(
 
 
 @pytest.mark.covers("imc.IMC_SetMulParam")
+@pytest.mark.covers("imc.param.groupnum", "imc.param.pathaxisnum1", "imc.param.pathaxisnum2")
 def test_what_a_queue_never_holds_is_out_of_range_and_not_a_full_queue() -> None:
     card = Card(parse_card("ready = true\n[depths]\nififo = 64\nqfifo = 64\npfifo1 = 64\ncfifo = 100\n"))
     handle = opened(card)
@@ -366,6 +428,7 @@ def test_what_a_queue_never_holds_is_out_of_range_and_not_a_full_queue() -> None
     lib.detach()
 
 
+@pytest.mark.covers("imc.IMC_AddContourData", "imc.IMC_InstallEvent", "imc.IMC_SetMulParam")
 def test_a_star_import_brings_functions_codes_and_addresses() -> None:
     names: dict[str, Any] = {}
     exec("from polycnc.controllers.imc.imclib import *", names)
@@ -377,6 +440,7 @@ def test_a_star_import_brings_functions_codes_and_addresses() -> None:
 
 
 @pytest.mark.covers("imc.IMC_SetParam32")
+@pytest.mark.covers("imc.IMC_MoveAbsolute", "imc.param.mcstgpos")
 def test_floats_are_converted_where_c_converts_them(card: ToldCard, handle: lib.IMC_HANDLE) -> None:
     position: Any = -1234.9
     velocity: Any = 2.5 * 65536

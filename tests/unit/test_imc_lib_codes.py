@@ -5,9 +5,7 @@ from __future__ import annotations
 import ctypes
 import inspect
 import re
-from itertools import chain
 from pathlib import Path
-from typing import Any
 
 import pytest
 
@@ -38,6 +36,7 @@ STATUSES = [
 ]
 
 
+@pytest.mark.covers("imc.enum.IMC_STATUS")
 def test_statuses_have_the_numbers_of_their_order_and_a_text() -> None:
     for value, name in enumerate(STATUSES):
         status = getattr(imclib, name)
@@ -52,22 +51,35 @@ def test_statuses_count_from_0_and_say_different_things() -> None:
     assert len({status.text for status in imclib.IMC_STATUS}) == 19
 
 
-@pytest.mark.covers("imc.enum.FIFO_SEL")
+@pytest.mark.covers(
+    "imc.enum.FIFO_SEL", *(f"imc.fifo.SEL_{name}" for name in ("IFIFO", "QFIFO", "PFIFO1", "PFIFO2", "CFIFO"))
+)
 def test_queues_count_from_0() -> None:
     names = ["SEL_IFIFO", "SEL_QFIFO", "SEL_PFIFO1", "SEL_PFIFO2", "SEL_CFIFO"]
     assert [getattr(imclib, name) for name in names] == list(range(5))
     assert [each.name for each in imclib.FIFO_SEL] == names
 
 
-@pytest.mark.covers("imc.enum.IMC_EVENT_CMD", "imc.enum.IMC_EventType")
+# In the order of the manual's declarations, from 0.
+COMMANDS = [
+    "ADD32", "ADD32i", "ADD48", "ADD48i", "CMP32", "CMP32i", "CMP48", "CMP48i", "SCA32", "SCA32i", "SCA48",
+    "SCA48i", "MUL32L", "MUL32iL", "MUL32A", "MUL32iA", "COP16", "COP32", "COP48", "SET16", "SET32", "SET48",
+    "OR16", "OR16i", "OR16B", "OR16iB", "AND16", "AND16i", "AND16B", "AND16iB", "XOR16", "XOR16i", "XOR16B",
+    "XOR16iB",
+]  # fmt: skip
+TYPES = [
+    "Allways", "Edge_Zero", "Edge_NotZero", "Edge_Great", "Edge_GreatEqu", "Edge_Little", "Edge_Carry",
+    "Edge_NotCarry", "IF_Zero", "IF_NotZero", "IF_Great", "IF_GreatEqu", "IF_Little", "IF_Carry", "IF_NotCarry",
+]  # fmt: skip
+
+
+@pytest.mark.covers(*(f"imc.event.CMD_{name}" for name in COMMANDS), "imc.enum.IMC_EVENT_CMD")
+@pytest.mark.covers(*(f"imc.etype.IMC_{name}" for name in TYPES), "imc.enum.IMC_EventType")
 def test_events_count_from_0() -> None:
-    assert len(imclib.IMC_EVENT_CMD) == 34
-    assert len(imclib.IMC_EventType) == 15
-    for each in chain[Any](imclib.IMC_EVENT_CMD, imclib.IMC_EventType):
-        assert getattr(imclib, each.name) is each
-    first = (imclib.CMD_ADD32, imclib.CMD_CMP32, imclib.CMD_SET16, imclib.CMD_XOR16iB)
-    assert first == (0, 4, 19, 33)
-    assert (imclib.IMC_Allways, imclib.IMC_Edge_Great, imclib.IMC_IF_NotCarry) == (0, 3, 14)
+    assert [getattr(imclib, f"CMD_{name}") for name in COMMANDS] == list(range(34))
+    assert [getattr(imclib, f"IMC_{name}") for name in TYPES] == list(range(15))
+    assert [each.name for each in imclib.IMC_EVENT_CMD] == [f"CMD_{name}" for name in COMMANDS]
+    assert [each.name for each in imclib.IMC_EventType] == [f"IMC_{name}" for name in TYPES]
 
 
 @pytest.mark.covers("imc.file.paramdef_h")
@@ -111,6 +123,7 @@ PROTOTYPES = {
 }
 
 
+@pytest.mark.covers(*(f"imc.{name}" for name in PROTOTYPES))
 def test_all_53_functions_have_the_prototype_of_the_manual() -> None:
     assert len(PROTOTYPES) == 53
     assert {getattr(imclib, name).__name__ for name in PROTOTYPES} == set(imclib.FUNCTIONS)

@@ -45,24 +45,24 @@ def named(writes: WriteMany) -> dict[str, int]:
 
 SYNC = {"synsrc": 502, "synaxis": 0}
 CASES: dict[str, tuple[tuple[Any, ...], dict[str, int]]] = {
-    "IMC_MoveAbsolute": ((6250,), {"mcsdist": 0, "mcstgpos": 6250, "mcsgo": -1}),
-    "IMC_MoveRelative": ((-50,), {"mcsdist": -50, "mcsgo": -1}),
-    "IMC_MoveSuperimposed": ((-53,), {"pcsdist": -53, "pcsgo": -1}),
-    "IMC_Phasing": ((-730,), {"pcsdist": -730, "pcsgo": -1}),
-    "IMC_MoveVelocity": ((-100 * 65536,), {"mcstgvel": -6553600}),
-    "IMC_HomeSwitch1": ((0, 1, 0), {"homeseq": 0x14, "gohome": -1}),
-    "IMC_HomeSwitch2": ((1, 0, 1), {"homeseq": 0x27, "gohome": -1}),
-    "IMC_HomeSwitch3": ((1, 0, 1), {"homeseq": 0x47, "gohome": -1}),
-    "IMC_HomeSwitchIndex1": ((1, 1, 0), {"homeseq": 0x1D, "gohome": -1}),
+    "IMC_MoveAbsolute": ((-1906250003,), {"mcsdist": 0, "mcstgpos": -1906250003, "mcsgo": -1}),
+    "IMC_MoveRelative": ((-1850000001,), {"mcsdist": -1850000001, "mcsgo": -1}),
+    "IMC_MoveSuperimposed": ((-1530000007,), {"pcsdist": -1530000007, "pcsgo": -1}),
+    "IMC_Phasing": ((1730000009,), {"pcsdist": 1730000009, "pcsgo": -1}),
+    "IMC_MoveVelocity": ((-30000 * 65536 - 13,), {"mcstgvel": -1966080013}),
+    "IMC_HomeSwitch1": ((0, 7, 0), {"homeseq": 0x14, "gohome": -1}),
+    "IMC_HomeSwitch2": ((1, 0, -3), {"homeseq": 0x27, "gohome": -1}),
+    "IMC_HomeSwitch3": ((1, 0, 256), {"homeseq": 0x47, "gohome": -1}),
+    "IMC_HomeSwitchIndex1": ((1, -2, 0), {"homeseq": 0x1D, "gohome": -1}),
     "IMC_HomeSwitchIndex2": ((0, 0, 1), {"homeseq": 0x2E, "gohome": -1}),
-    "IMC_HomeSwitchIndex3": ((1, 1, 1), {"homeseq": 0x5F, "gohome": -1}),
-    "IMC_HomeIndex": ((1, 1), {"homeseq": 0x0B, "gohome": -1}),
+    "IMC_HomeSwitchIndex3": ((1, 256, 2), {"homeseq": 0x5F, "gohome": -1}),
+    "IMC_HomeIndex": ((1, 32767), {"homeseq": 0x0B, "gohome": -1}),
     "IMC_GearFree": (
         (0.5, 1, 2),
         {"master": 1, "gearsrc": 4, "gearratio": 1 << 31, "syntype": 0, "enasyn": 0, "engear": -1},
     ),
     "IMC_GearInDist": (
-        (-1.5, 1, 1, 3, 4, 1000),
+        (-1.5, 1, 1, 3, 4, 1000000007),
         {
             "master": 1,
             "gearsrc": 75,
@@ -70,20 +70,20 @@ CASES: dict[str, tuple[tuple[Any, ...], dict[str, int]]] = {
             "syntype": 0,
             "synsrc": 86,
             "synaxis": 3,
-            "synsrcvar": 1000,
+            "synsrcvar": 1000000007,
             "enasyn": -1,
             "engear": -1,
         },
     ),
     "IMC_GearInTime": (
-        (1.0, 0, 3, 250),
+        (-30000.25, 3, 3, 2000000011),
         {
-            "master": 0,
+            "master": 3,
             "gearsrc": 27,
-            "gearratio": 1 << 32,
+            "gearratio": -(120001 << 30),
             "syntype": 0,
             **SYNC,
-            "synsrcvar": 250,
+            "synsrcvar": 2000000011,
             "enasyn": -1,
             "engear": -1,
         },
@@ -93,20 +93,34 @@ CASES: dict[str, tuple[tuple[Any, ...], dict[str, int]]] = {
         {"master": 3, "gearsrc": 83, "gearratio": 10 << 32, "syntype": 0, "enasyn": 0, "engear": -1},
     ),
     "IMC_MoveInTime": (
-        (1000, -5000),
-        {"syntype": -1, **SYNC, "synsrcvar": 1000, "slavedist": -5000, "slaveabs": 0, "enasyn": -1},
+        (1000000003, -1500000005),
+        {
+            "syntype": -1,
+            **SYNC,
+            "synsrcvar": 1000000003,
+            "slavedist": -1500000005,
+            "slaveabs": 0,
+            "enasyn": -1,
+        },
     ),
     "IMC_MoveInDist": (
-        (2000, 1, -500),
-        {"syntype": -1, "synsrc": 225, "synaxis": 1, "synsrcvar": 2000, "slavedist": -500, "slaveabs": 0},
+        (2000000017, 1, -1500000007),
+        {
+            "syntype": -1,
+            "synsrc": 225,
+            "synaxis": 1,
+            "synsrcvar": 2000000017,
+            "slavedist": -1500000007,
+            "slaveabs": 0,
+        },
     ),
     "IMC_TgvelInTime": (
-        (500, -6553600),
-        {"syntype": 0, **SYNC, "synsrcvar": 500, "mcstgvel": -6553600, "enasyn": -1},
+        (1500000019, -1966080013),
+        {"syntype": 0, **SYNC, "synsrcvar": 1500000019, "mcstgvel": -1966080013, "enasyn": -1},
     ),
     "IMC_TgvelInDist": (
-        (2000, 3, -65537),
-        {"syntype": 0, "synsrc": 225, "synaxis": 3, "synsrcvar": 2000, "mcstgvel": -65537},
+        (2000000023, 3, 1966080017),
+        {"syntype": 0, "synsrc": 225, "synaxis": 3, "synsrcvar": 2000000023, "mcstgvel": 1966080017},
     ),
 }
 
@@ -124,6 +138,8 @@ ROWS = {  # functions that the manual describes under another name
 @pytest.mark.parametrize(
     "name", [pytest.param(each, marks=pytest.mark.covers(f"imc.{ROWS.get(each, each)}")) for each in CASES]
 )
+@pytest.mark.covers("imc.const.RiseEdge", "imc.const.stop", "imc.const.direction", "imc.param.homeseq")
+@pytest.mark.covers("imc.type.IMC32", "imc.type.IMCFLOAT")
 def test_functions_of_motion_are_one_instruction(card: ToldCard, handle: lib.IMC_HANDLE, name: str) -> None:
     arguments, writes = CASES[name]
     assert getattr(lib, name)(handle, *arguments, 2, lib.SEL_QFIFO) == lib.IMC_OK
@@ -151,10 +167,9 @@ def test_source_types_are_addresses_of_velocities_and_positions(
     for k in range(5):
         assert lib.IMC_GearInDist(handle, 1.0, 0, k, 1, k, 100, 2, lib.SEL_IFIFO) == lib.IMC_OK
     found = [named(each) for _, each in card.told if isinstance(each, WriteMany)]
-    gears = ("curvel", "encpvel", "mcsvel", "pcsvel", "encsvel")
-    paces = ("curpos", "encp", "mcspos", "pcspos", "encs")
-    assert [each["gearsrc"] for each in found] == [PARAMETERS[name].address for name in gears]
-    assert [each["synsrc"] for each in found] == [PARAMETERS[name].address for name in paces]
+    # chapter 5: curvel, encpvel, mcsvel, pcsvel, encsvel; curpos, encp, mcspos, pcspos, encs
+    assert [each["gearsrc"] for each in found] == [227, 75, 4, 27, 83]
+    assert [each["synsrc"] for each in found] == [225, 78, 10, 33, 86]
 
 
 @pytest.mark.covers("imc.IMC_HandWheel")
@@ -165,6 +180,7 @@ def test_source_types_are_addresses_of_velocities_and_positions(
     + [(2.0 / 3.0, (0xAAAB, 0xAAAA, 0)), (-2.0 / 3.0, (0x5555, 0x5555, 0xFFFF)), (7.25, (0, 0x4000, 7))],
 )
 @pytest.mark.covers("imc.type.IMCFLOAT")
+@pytest.mark.covers("imc.IMC_GearInDist", "imc.param.gearsrc")
 def test_ratios_become_48_bits(
     card: ToldCard, handle: lib.IMC_HANDLE, raw: float, words: tuple[int, ...]
 ) -> None:
@@ -190,21 +206,26 @@ def test_ratios_become_48_bits(
     "imc.type.IMC32",
     "imc.type.__int64",
 )
+@pytest.mark.covers("imc.IMC_HandWheel")
 def test_basic_functions(card: ToldCard, handle: lib.IMC_HANDLE) -> None:
     calls: list[tuple[str, tuple[Any, ...], Any]] = [
         ("IMC_SetParam16", (152, -1, 1, 1), Write(152, -1, 1, 1)),
-        ("IMC_SetParam32", (12, 100, 0, 0), Write(12, 100, 0, 2)),
-        ("IMC_SetParam48", (175, 1 << 32, 0, 0), Write(175, 1 << 32, 0, 3)),
+        ("IMC_SetParam16", (307, 32767, 3, 0), Write(307, 32767, 3, 1)),
+        ("IMC_SetParam32", (12, -2000000001, 3, 0), Write(12, -2000000001, 3, 2)),
+        ("IMC_SetParam32", (12, 2147483647, 0, 1), Write(12, 2147483647, 0, 2)),
+        ("IMC_SetParam48", (175, -(1 << 46) - 5, 3, 0), Write(175, -(1 << 46) - 5, 3, 3)),
+        ("IMC_SetParam48", (175, (1 << 47) - 1, 0, 1), Write(175, (1 << 47) - 1, 0, 3)),
         ("IMC_SetParamBit", (562, 3, 1, 2, 0), ChangeBits(562, 8, 0, 2)),
         ("IMC_SetParamBit", (562, 3, 0, 2, 0), ChangeBits(562, 8, 8, 2)),
         ("IMC_TurnParamBit", (562, 15, 2, 0), ChangeBits(562, 0, 0x8000, 2)),
         ("IMC_ORXORParam", (562, -1, 0xF0, 2, 0), ChangeBits(562, 0xFFFF, 0xF0, 2)),
-        ("IMC_WaitTime", (50, 1), WaitTime(50)),
+        ("IMC_WaitTime", (2000000003, 2), WaitTime(2000000003)),
         ("IMC_WaitTime", (0xFFFFFFFF, 1), WaitTime(-1)),
-        ("IMC_WaitParam", (218, -1, 50, 1, 2), WaitParam(218, 0xFFFF, 50, 1)),
-        ("IMC_WaitParamBit", (562, 2, 1, 0, 1, 2), WaitParam(562, 4, 0, 1, 4)),
+        ("IMC_WaitParam", (218, -1, 70005, 3, 2), WaitParam(218, 0xFFFF, 70005, 3)),
+        ("IMC_WaitParamBit", (562, 2, 1, 70007, 3, 2), WaitParam(562, 4, 70007, 3, 4)),
         ("IMC_WaitParamBit", (562, 2, 0, 0, 1, 2), WaitParam(562, 0, 0, 1, 4)),
         ("IMC_WaitParamMask", (307, 0xFF, 0x1234, -1, 9, 2), WaitParam(307, 0x1234, -1, 0, 0xFF)),
+        ("IMC_WaitParamMask", (562, 0xA500, 0x8100, 70009, 3, 1), WaitParam(562, 0x8100, 70009, 3, 0xA500)),
     ]
     for name, arguments, instruction in calls:
         card.told.clear()
@@ -213,11 +234,26 @@ def test_basic_functions(card: ToldCard, handle: lib.IMC_HANDLE) -> None:
 
 
 @pytest.mark.covers("imc.IMC_SetMulParam", "imc.struct.WR_MUL_DES")
+@pytest.mark.covers(
+    "imc.IMC_ORXORParam",
+    "imc.IMC_SetParam32",
+    "imc.IMC_SetParam48",
+    "imc.IMC_SetParamBit",
+    "imc.IMC_TurnParamBit",
+    "imc.IMC_WaitParamBit",
+    "imc.IMC_WaitParamMask",
+    "imc.IMC_WaitTime",
+)
 def test_several_parameters_are_one_instruction(card: ToldCard, handle: lib.IMC_HANDLE) -> None:
     elements = [lib.WR_MUL_DES.of(12, 0, 2, -7), lib.WR_MUL_DES.of(23, 1, 1, -1)]
-    elements.append(lib.WR_MUL_DES.of(175, 2, 3, 1 << 32))
+    elements.append(lib.WR_MUL_DES.of(175, 2, 3, -(1 << 46) - 5))
+    elements.append(lib.WR_MUL_DES.of(12, 3, 2, 1_900_000_003))
     lib.IMC_SetMulParam(handle, elements, 2, lib.SEL_QFIFO)
-    assert card.told == [(1, WriteMany((Write(12, -7, 0, 2), Write(23, -1, 1, 1))))]
+    first = (Write(12, -7, 0, 2), Write(23, -1, 1, 1))
+    assert card.told == [(1, WriteMany(first))]
+    lib.IMC_SetMulParam(handle, elements, 4, lib.SEL_PFIFO2)
+    last = (Write(175, -(1 << 46) - 5, 2, 3), Write(12, 1_900_000_003, 3, 2))
+    assert card.told[1:] == [(3, WriteMany((*first, *last)))]
 
 
 @pytest.mark.covers(
@@ -233,26 +269,40 @@ def test_several_parameters_are_one_instruction(card: ToldCard, handle: lib.IMC_
     "imc.struct.PFIFOSegInfo",
 )
 @pytest.mark.covers("imc.const.arc_dir", "imc.const.dir_conflict")
+@pytest.mark.covers("imc.IMC_SetMulParam")
 def test_segments(card: ToldCard, handle: lib.IMC_HANDLE) -> None:
     of = lib.PFIFOSegData.of
-    ends, center = (30, 40), (10, 20)
-    arc = of(*ends, 50, center=center, direction=0)
+    ends, center = (1900000003, -1800000005), (-1700000007, 1600000009)
+    last, speed, end_speed = -1500000011, 2000000013, 1400000017
+    arc = of(*ends, last, center=center, direction=0)
     calls: list[tuple[str, tuple[Any, ...], Segment]] = [
-        ("IMC_AddLineN", (of(1, -2, 3),), Segment((1, -2, 3), clockwise=True)),
-        ("IMC_AddLineNWithVel", (lib.PFIFOSegInfo.of(9, 4, of(1)),), Segment((1,), None, True, 9, 4)),
-        ("IMC_AddArcLine", (arc,), Segment((*ends, 50), center, clockwise=True)),
+        ("IMC_AddLineN", (of(*ends, last),), Segment((*ends, last), clockwise=True)),
+        (
+            "IMC_AddLineNWithVel",
+            (lib.PFIFOSegInfo.of(speed, end_speed, of(last)),),
+            Segment((last,), None, True, speed, end_speed),
+        ),
+        ("IMC_AddArcLine", (arc,), Segment((*ends, last), center, clockwise=True)),
         ("IMC_AddArcLine", (of(*ends, center=center, direction=-1),), Segment(ends, center)),
         ("IMC_AddArcLine", (of(*ends, center=center, direction=0xFFFF),), Segment(ends, center)),
         (
             "IMC_AddArcLineWithVel",
-            (lib.PFIFOSegInfo.of(9, 4, arc),),
-            Segment((*ends, 50), center, True, 9, 4),
+            (lib.PFIFOSegInfo.of(speed, end_speed, arc),),
+            Segment((*ends, last), center, True, speed, end_speed),
         ),
         ("IMC_AddArc", (*ends, *center, 0), Segment(ends, center)),
         ("IMC_AddArc", (*ends, *center, 1), Segment(ends, center, clockwise=True)),
-        ("IMC_AddArcWithVel", (9, 4, *ends, *center, 1), Segment(ends, center, True, 9, 4)),
-        ("IMC_AddSpiral", (*ends, 50, *center, 0), Segment((*ends, 50), center)),
-        ("IMC_AddSpiralWithVel", (9, 4, *ends, 50, *center, 1), Segment((*ends, 50), center, True, 9, 4)),
+        (
+            "IMC_AddArcWithVel",
+            (speed, end_speed, *ends, *center, 1),
+            Segment(ends, center, True, speed, end_speed),
+        ),
+        ("IMC_AddSpiral", (*ends, last, *center, 0), Segment((*ends, last), center)),
+        (
+            "IMC_AddSpiralWithVel",
+            (speed, end_speed, *ends, last, *center, 1),
+            Segment((*ends, last), center, True, speed, end_speed),
+        ),
     ]
     for name, arguments, segment in calls:
         card.told.clear()
@@ -267,11 +317,23 @@ def test_segments(card: ToldCard, handle: lib.IMC_HANDLE) -> None:
 
 @pytest.mark.covers(
     "imc.IMC_InstallEvent",
+    "imc.enum.IMC_EVENT_CMD",
+    "imc.enum.IMC_EventType",
     "imc.struct.EventInfo",
     "imc.struct.EventInfo.Src2.param",
     "imc.struct.EventInfo.Src2.data16",
     "imc.struct.EventInfo.Src2.data32",
     "imc.struct.EventInfo.Src2.data48",
+)
+@pytest.mark.covers(
+    "imc.IMC_AddArc",
+    "imc.IMC_AddArcLine",
+    "imc.IMC_AddArcLineWithVel",
+    "imc.IMC_AddArcWithVel",
+    "imc.IMC_AddLineN",
+    "imc.IMC_AddLineNWithVel",
+    "imc.IMC_AddSpiral",
+    "imc.IMC_AddSpiralWithVel",
 )
 def test_events_take_the_operands_of_their_command(card: ToldCard, handle: lib.IMC_HANDLE) -> None:
     of = lib.EventInfo.of
@@ -279,16 +341,22 @@ def test_events_take_the_operands_of_their_command(card: ToldCard, handle: lib.I
     factor.Src2.data32.data = 65536  # as the manual's example fills it: the same memory as data48
     events = [
         of(lib.CMD_ADD32, src1=(225, 0), src2=(225, 1), dest=(317, 0)),
-        of(lib.CMD_CMP32i, src1=(225, 3), src2=-10000),
+        of(lib.CMD_CMP32i, src1=(225, 3), src2=-1900000003),
+        of(lib.CMD_ADD48i, src1=(175, 1), src2=-(1 << 46) - 9, dest=(175, 2)),
+        of(lib.CMD_SET48, src2=-(1 << 46) - 7, dest=(337, 0)),
+        of(lib.CMD_OR16i, lib.IMC_IF_NotCarry, src1=(562, 2), src2=-32767, dest=(307, 0)),
         of(lib.CMD_SET16, lib.IMC_Edge_GreatEqu, src2=-1, dest=(189, 2)),
         of(lib.CMD_COP48, src2=(340, 0), dest=(337, 0)),
         factor,
     ]
-    assert lib.IMC_InstallEvent(handle, events, 5, lib.SEL_IFIFO) == lib.IMC_OK
+    assert lib.IMC_InstallEvent(handle, events, 8, lib.SEL_IFIFO) == lib.IMC_OK
     always = EventType.IMC_Allways
     told = (
         Event(EventCommand.CMD_ADD32, always, 225, 0, 225, 1, target=317),
-        Event(EventCommand.CMD_CMP32i, always, 225, 3, constant=-10000),
+        Event(EventCommand.CMD_CMP32i, always, 225, 3, constant=-1900000003),
+        Event(EventCommand.CMD_ADD48i, always, 175, 1, constant=-(1 << 46) - 9, target=175, target_axis=2),
+        Event(EventCommand.CMD_SET48, always, constant=-(1 << 46) - 7, target=337),
+        Event(EventCommand.CMD_OR16i, EventType.IMC_IF_NotCarry, 562, 2, constant=-32767, target=307),
         Event(EventCommand.CMD_SET16, EventType.IMC_Edge_GreatEqu, constant=-1, target=189, target_axis=2),
         Event(EventCommand.CMD_COP48, always, second=340, target=337),
         Event(EventCommand.CMD_SCA32i, always, 317, constant=65536, target=319),
@@ -318,8 +386,16 @@ def test_reading(card: ToldCard, handle: lib.IMC_HANDLE) -> None:
 
 
 @pytest.mark.covers("imc.IMC_GetCapData")
+@pytest.mark.covers(
+    "imc.IMC_GetMulParam",
+    "imc.IMC_GetParam16",
+    "imc.IMC_GetParam32",
+    "imc.IMC_GetParam48",
+    "imc.IMC_GetParamBit",
+)
 def test_captured_positions(card: ToldCard, handle: lib.IMC_HANDLE) -> None:
-    card.captured[2] = list(range(130))
-    assert lib.IMC_GetCapData(handle, 100, 2) == (lib.IMC_OK, list(range(100)), 100, 30)
-    assert lib.IMC_GetCapData(handle, 100, 2) == (lib.IMC_OK, list(range(100, 130)), 30, 0)
+    places = [(-1) ** k * (2_000_000_000 + k) for k in range(130)]
+    card.captured[2] = list(places)
+    assert lib.IMC_GetCapData(handle, 100, 2) == (lib.IMC_OK, places[:100], 100, 30)
+    assert lib.IMC_GetCapData(handle, 100, 2) == (lib.IMC_OK, places[100:], 30, 0)
     assert lib.IMC_GetCapData(handle, 100, 2) == (lib.IMC_OK, [], 0, 0)

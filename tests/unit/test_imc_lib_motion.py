@@ -193,6 +193,54 @@ def test_homing(name: str, arguments: tuple[int, ...], start: int, origin: int, 
     assert stopped == pytest.approx(end, abs=12 if abs(end) == 200 else 2)
 
 
+HOMING_SPEEDS = {  # the speeds that an axis has on its ways, one after the other, in the direction of the search
+    "IMC_HomeSwitch1": [20],
+    "IMC_HomeSwitch2": [20, -2],
+    "IMC_HomeSwitch3": [20, -2, 2],
+    "IMC_HomeSwitchIndex1": [20],
+    "IMC_HomeSwitchIndex2": [20, -2],
+    "IMC_HomeSwitchIndex3": [20, -2, 2],
+    "IMC_HomeIndex": [20],
+}
+
+
+@pytest.mark.covers("imc.concept.homing", "imc.param.highvel", "imc.param.lowvel", "imc.const.direction")
+@pytest.mark.parametrize(
+    ("name", "speeds"),
+    [
+        pytest.param(name, speeds, marks=pytest.mark.covers(f"imc.{name}"))
+        for name, speeds in HOMING_SPEEDS.items()
+    ],
+)
+def test_homing_has_its_two_speeds(program: Program, name: str, speeds: list[int]) -> None:
+    lib.detach()
+    for way in (1, -1):
+        program = Program(HOMING)
+        for rate in ("mcsaccel", "mcsdecel"):  # so high that every speed is reached at once
+            program.card.write(rate, 2.5, axis=2)
+        if way < 0:
+            program.card.write("homepos", 9000, axis=2)
+            program.ok(lib.IMC_MoveAbsolute, 9000, 2, IF)
+            program.rest(2)
+        edge = () if name == "IMC_HomeIndex" else (1,)
+        program.ok(getattr(lib, name), int(way < 0), *edge, 0, 2, IF)
+        tops: list[int] = []
+        before = 0
+        for _ in range(1500):
+            speed = program.get("mcsvel", 2)
+            if speed * before <= 0 and speed != 0:
+                tops.append(0)
+            if abs(speed) > abs(tops[-1] if tops else 0):
+                tops[-1] = speed
+            before = speed
+            if program.get("gohome", 2) == 0 and tops:
+                break
+            program.run(1)
+        assert tops == [each * way * 65536 for each in speeds]
+        assert program.get("homed", 2) == -1
+        lib.detach()
+
+
 @pytest.mark.covers("imc.concept.gear_law", "imc.param.engear", "imc.param.gearoutmod", "imc.param.mcsaccel")
 @pytest.mark.covers("imc.IMC_GearFree")
 def test_free_gear_follows_with_the_ramp_of_the_slave(program: Program) -> None:
@@ -274,7 +322,15 @@ def test_position_over_time(program: Program) -> None:
     assert program.get("curpos", 1) == 0
     program.set("startsyn", -1, 1)
     program.run(1)
-    program.run(990)
+    speeds = []
+    for _ in range(990):
+        program.run(1)
+        speeds.append(program.get("mcsvel", 1) / 65536)
+    # from rest to rest with one rise: half as fast again as the mean at half time, and as slow in the end as at first
+    assert speeds[0] < 0.1
+    assert speeds[989] < 0.4
+    assert max(speeds) == pytest.approx(7.5, abs=0.1)
+    assert max(speeds) - speeds[498] < 0.01
     assert 4900 < program.get("curpos", 1) < 5000
     program.run(12)
     assert (program.get("curpos", 1), program.get("mcsvel", 1)) == (5000, 0)
@@ -340,6 +396,7 @@ def test_velocity_over_the_way_of_another_axis(program: Program) -> None:
     assert program.get("mcsvel", 1) == -20 * 65536
 
 
+@pytest.mark.covers("imc.IMC_MoveAbsolute")
 def test_a_poll_may_go_to_the_next_rest_of_an_axis() -> None:
     program = Program(clock=Poll(1000))
     program.ok(lib.IMC_MoveAbsolute, 6250, 0, Q)
@@ -351,6 +408,7 @@ def test_a_poll_may_go_to_the_next_rest_of_an_axis() -> None:
     lib.detach()
 
 
+@pytest.mark.covers("imc.IMC_GetParam32", "imc.IMC_Open")
 def test_two_cards_keep_in_step() -> None:
     cards = Card(parse_card("ready = true")), Card(parse_card("ready = true"))
     lib.attach(*cards)
@@ -376,6 +434,7 @@ def test_two_cards_keep_in_step() -> None:
     ],
 )
 @pytest.mark.covers("imc.IMC_GearInDist", "imc.const.synsourcetype")
+@pytest.mark.covers("imc.param.pcstgvel")
 def test_each_sync_source_paces_the_engagement_by_its_own_quantity(
     program: Program, code: int, cycles: int
 ) -> None:

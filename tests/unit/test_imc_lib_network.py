@@ -22,6 +22,7 @@ def _leave_no_card() -> Iterator[None]:
 
 
 @pytest.mark.covers("imc.IMC_FindNetCard")
+@pytest.mark.covers("imc.IMC_Close", "imc.IMC_Open")
 def test_find_lists_the_adapters_and_only_while_no_card_is_open() -> None:
     lib.attach(ToldCard(), adapters=("first", "second"))
     info = lib.NIC_INFO()
@@ -63,6 +64,7 @@ def test_open_finds_a_card_by_adapter_and_id() -> None:
 
 
 @pytest.mark.covers("imc.IMC_OpenX", "imc.const.openMode", "imc.option.openMode")
+@pytest.mark.covers("imc.IMC_Open")
 def test_time_out_and_mode_of_openx() -> None:
     port, _ = lib.attach(
         lib.Port(ToldCard(), 0, reply_ms=30.0),
@@ -108,6 +110,7 @@ def test_firmware_of_another_generation_is_not_opened() -> None:
 
 
 @pytest.mark.covers("imc.IMC_Close", "imc.status.IMC_DEVICE_NOT_OPEN", "imc.type.IMC_HANDLE")
+@pytest.mark.covers("imc.IMC_Open")
 def test_a_closed_card_cannot_be_reached() -> None:
     card = ToldCard()
     handle = opened(card)
@@ -134,6 +137,7 @@ def test_what_is_no_handle_is_told_so() -> None:
 
 
 @pytest.mark.covers("imc.IMC_ClearFIFO", "imc.IMC_Open")
+@pytest.mark.covers("imc.IMC_OpenX")
 def test_a_bad_line_keeps_instructions_from_the_card() -> None:
     card = ToldCard()
     (port,) = lib.attach(card)
@@ -152,6 +156,7 @@ def test_a_bad_line_keeps_instructions_from_the_card() -> None:
     assert (card.told, card.cleared) == ([], [])
 
 
+@pytest.mark.covers("imc.IMC_GetParamBit")
 def test_time_passes_when_a_program_reads_or_finds_a_queue_full() -> None:
     here, there = ToldCard(), ToldCard()
     handle = opened(here, clock=Poll(7))
@@ -231,6 +236,7 @@ def test_threads_take_turns() -> None:
     assert (len(card.told), set(overlaps)) == (16, {1})
 
 
+@pytest.mark.covers("imc.IMC_Close")
 def test_two_programs_have_their_own_network_handles_and_time() -> None:
     mine, theirs = ToldCard(), ToldCard()
     here, there = lib.Session(), lib.Session()

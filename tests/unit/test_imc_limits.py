@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import pytest
 
+from polycnc.controllers.imc.core._parameters import address
 from support.imc_card import (
     FLAG,
     IFIFO,
@@ -47,6 +48,7 @@ def test_a_limit_switch_stops_the_motion_towards_it_only(way: int, bit: int, lev
 
 @pytest.mark.covers("imc.param.aioctr")
 @pytest.mark.parametrize("way", [1, -1])
+@pytest.mark.covers("imc.param.homeseq", "imc.param.mcsdist", "imc.param.mcstgvel", "imc.param.mcstgpos")
 def test_at_a_limit_switch_every_command_leads_away_from_it_only(way: int) -> None:
     card = ready_card(LIMITS)
     set_now(card, ("aioctr", 0x000F))
@@ -79,23 +81,35 @@ def test_at_a_limit_switch_every_command_leads_away_from_it_only(way: int) -> No
 
 
 @pytest.mark.covers("imc.param.aioctr")
-@pytest.mark.covers("imc.param.aiolat", "imc.param.clraiolat")
-def test_limits_work_by_their_polarity_and_only_when_they_are_used() -> None:
-    low = 'low_when_on = ["limit_positive"]\n'
-    for text, control, error in (("", 0x0, 0), ("", 0x2, 1), ("", 0x3, 1), (low, 0x2, 1), (low, 0x3, 1)):
-        card = ready_card("[[axis]]\nlimit_positive = 1000.0\n" + text)
+@pytest.mark.covers("imc.param.aiolat", "imc.param.clraiolat", "imc.param.aio", "imc.param.error")
+@pytest.mark.parametrize(
+    ("way", "name", "on", "high", "bit"), [(1, "positive", 2, 1, 1), (-1, "negative", 8, 4, 2)]
+)
+def test_limits_work_by_their_polarity_and_only_when_they_are_used(
+    way: int, name: str, on: int, high: int, bit: int
+) -> None:
+    low = f'low_when_on = ["limit_{name}"]\n'
+    for text, control, error in (
+        ("", 0, 0),
+        ("", on, bit),
+        ("", on | high, bit),
+        (low, on, bit),
+        (low, on | high, bit),
+    ):
+        card = ready_card(f"[[axis]]\nlimit_{name} = {1000.0 * way}\n" + text)
         set_now(card, ("aioctr", control))
-        send(card, IFIFO, ("mcstgvel", 20))
+        send(card, IFIFO, ("mcstgvel", 20 * way))
         card.advance(10)
         early = card.read("error")
         card.advance(100)
-        wrong_way_round = bool(text) == bool(control & 1) and control != 0
-        assert early == (1 if wrong_way_round else 0)
+        wrong_way_round = bool(text) == bool(control & high) and control != 0
+        assert early == (bit if wrong_way_round else 0)
         assert card.read("error") == error
-        assert bool(int(card.read("aiolat")) & 1) == (bool(text) != bool(control & 1))
+        assert bool(int(card.read("aiolat")) & bit) == (bool(text) != bool(control & high))
 
 
 @pytest.mark.covers("imc.param.aiolat", "imc.param.clraiolat")
+@pytest.mark.covers("imc.param.aioctr")
 def test_a_latched_terminal_is_cleared_by_its_own_bit() -> None:
     card = ready_card("[[axis]]\nlimit_positive = 100.0\norigin = [30.0, 60.0]\n")
     set_now(card, ("aioctr", 0x11))  # positive limit and origin become active when they close
@@ -121,6 +135,7 @@ def test_software_limits_work_when_they_are_switched_on(way: int, bit: int) -> N
         assert (abs(card.read("curpos")) < 1200) == (error != 0)
 
 
+@pytest.mark.covers("imc.param.stopfilt")
 def test_an_error_that_no_mask_names_changes_nothing() -> None:
     card = ready_card(LIMITS)
     set_now(card, ("aioctr", 0x000F), ("stopfilt", 0))
@@ -132,6 +147,7 @@ def test_an_error_that_no_mask_names_changes_nothing() -> None:
 @pytest.mark.covers("imc.param.stopfilt")
 @pytest.mark.covers("imc.param.stopmode")
 @pytest.mark.parametrize(("soft", "way", "bit"), [(0, 1, 1), (0, -1, 2), (1, 1, 4), (1, -1, 8)])
+@pytest.mark.covers("imc.param.nsoftlim", "imc.param.psoftlim")
 def test_stopmode_names_the_errors_that_stop_at_once_and_all_others_brake(
     soft: int, way: int, bit: int
 ) -> None:
@@ -147,6 +163,49 @@ def test_stopmode_names_the_errors_that_stop_at_once_and_all_others_brake(
         assert card.read("error", 1) == bit
         assert least <= card.read("curpos", 1) * way - 500 <= most
         assert (card.read("curvel", 1), card.read("curvel", 2)) == (0, 3)
+
+
+@pytest.mark.covers("imc.param.stopfilt", "imc.param.stopmode", "imc.param.exitfilt", "imc.param.error")
+@pytest.mark.covers("imc.param.emstop", "imc.param.run")
+def test_each_bit_of_the_masks_is_for_its_own_error() -> None:
+    for number in range(16):
+        bit = 1 << number
+        for stop, mode, leave, way, after, run in (  # after two cycles from 9 pulses/ms with 2 pulses/ms2
+            (bit, ~bit, ~bit, 1, 5, FLAG),
+            (bit, bit, ~bit, -1, 0, FLAG),
+            (~bit, bit, ~bit, 1, 9, FLAG),
+            (0, 0, bit, -1, 0, 0),
+        ):
+            card = ready_card(number_of_axes=2)
+            set_now(card, ("mcsaccel", 9, 1), ("mcsdecel", 2, 1), ("mcstgvel", 9 * way, 1))
+            set_now(card, ("stopfilt", stop, 1), ("stopmode", mode, 1), ("exitfilt", leave, 1))
+            limit_of_this_way = (way > 0) == (number in (0, 2))
+            card.advance(1)
+            if number < 4 and not limit_of_this_way:
+                continue  # a limit stops what goes towards it
+            name, axis = ("emstop", 0) if number in (5, 6, 13) else ("error", 1)
+            set_now(card, (name, bit, axis))
+            card.advance(3)
+            assert (card.read("curvel", 1) * way, card.read("run", 1)) == (after, run), (
+                number,
+                stop,
+                mode,
+                leave,
+            )
+            assert int(card.read("error", 1)) & 0xFFFF == bit
+
+
+@pytest.mark.covers("imc.param.psoftlim", "imc.param.nsoftlim", "imc.param.aioctr", "imc.param.error")
+@pytest.mark.parametrize(("way", "name", "bit"), [(1, "psoftlim", 4), (-1, "nsoftlim", 8)])
+def test_a_software_limit_is_met_where_it_lies(way: int, name: str, bit: int) -> None:
+    for beyond, error in ((0, bit), (1, 0)):
+        card = ready_card()
+        set_now(card, ("mcsaccel", 7), ("stopfilt", 0), ("aioctr", 0xC000), (name, way * (70_000 + beyond)))
+        set_now(card, ("homepos", 69_930 * way), ("sethome", FLAG), ("mcstgvel", 7 * way))
+        card.advance(9)
+        assert (card.read("curpos"), card.read("error")) == (69_993 * way, 0)
+        card.advance(1)
+        assert (card.read("curpos"), card.read("error")) == (70_000 * way, error)
 
 
 @pytest.mark.covers("imc.param.exitfilt")
@@ -165,6 +224,7 @@ def test_exitfilt_names_the_errors_that_end_run() -> None:
 
 
 @pytest.mark.covers("imc.param.poserrlim")
+@pytest.mark.covers("imc.param.ena", "imc.param.poserr")
 def test_a_position_error_beyond_its_limit_is_an_error() -> None:
     card = ready_card()
     set_now(card, ("poserrlim", 100), ("ena", 0))
@@ -178,6 +238,7 @@ def test_a_position_error_beyond_its_limit_is_an_error() -> None:
 @pytest.mark.covers("imc.param.run")
 @pytest.mark.covers("imc.param.vellim", "imc.param.accellim")
 @pytest.mark.parametrize(("name", "value", "bit"), [("vellim", 30, 0x2000), ("accellim", 0.5, 0x4000)])
+@pytest.mark.covers("imc.param.exitfilt", "imc.param.mcsaccel", "imc.param.smooth", "imc.param.stopfilt")
 def test_speed_and_acceleration_limits_end_run_whatever_the_masks_say(
     name: str, value: float, bit: int
 ) -> None:
@@ -196,6 +257,7 @@ def test_speed_and_acceleration_limits_end_run_whatever_the_masks_say(
 
 
 @pytest.mark.covers("imc.param.emstop")
+@pytest.mark.covers("imc.param.ena")
 def test_an_emergency_stop_takes_everything_out_of_work_until_it_is_set_up_again() -> None:
     card = ready_card()
     enable_path(card, 0, 1)
@@ -222,6 +284,7 @@ def test_an_emergency_stop_takes_everything_out_of_work_until_it_is_set_up_again
     assert [card.read("error", i) for i in range(4)] == [0] * 4
 
 
+@pytest.mark.covers("imc.param.emstop")
 def test_other_bits_of_emstop_are_errors_of_every_axis() -> None:
     card = ready_card()
     send(card, IFIFO, ("mcstgvel", 20, 2), ("emstop", 0x40))
@@ -242,6 +305,7 @@ def test_a_limit_under_a_path_stops_the_path_along_itself() -> None:
     assert (card.read("startpath1"), card.read("moving"), card.read("error")) == (0, 0, 1)
 
 
+@pytest.mark.covers("imc.param.gearsrc")
 def test_run_set_to_0_stops_at_once_and_a_gear_is_left() -> None:
     card = ready_card()
     send(card, IFIFO, ("gearratio", 1.0, 1), ("gearsrc", 227, 1), ("engear", FLAG, 1), ("mcstgvel", 10))
@@ -251,6 +315,7 @@ def test_run_set_to_0_stops_at_once_and_a_gear_is_left() -> None:
     assert (card.read("curvel", 1), card.read("engear", 1), card.read("curvel", 0)) == (0, 0, 10)
 
 
+@pytest.mark.covers("imc.param.gearsrc")
 def test_a_card_that_is_switched_on_at_its_switches_shows_them() -> None:
     card = ready_card(
         "number_of_axes = 3\n[[axis]]\n[[axis]]\n"
@@ -259,3 +324,22 @@ def test_a_card_that_is_switched_on_at_its_switches_shows_them() -> None:
     )
     card.advance(1)
     assert [card.read("aio", i) for i in range(3)] == [0, 1 + 4, 2 + 4]
+
+
+@pytest.mark.covers("imc.param.mcsslope", "imc.param.pcsslope")
+def test_slope_is_clear_at_rest_however_the_motion_has_ended() -> None:
+    card = ready_card()
+    set_now(card, ("mcstgvel", 2, 0), ("pcstgvel", -1, 0), ("mcsaccel", 0.5, 1), ("stopmode", 0x40, 1))
+    set_now(
+        card, ("mcstgvel", 5, 1), ("syntype", FLAG, 2), ("synsrc", address("ticks"), 2), ("synsrcvar", 6, 2)
+    )
+    set_now(card, ("slavedist", 9, 2), ("enasyn", FLAG, 2), ("startsyn", FLAG, 2))
+    set_now(card, ("group_x", 3), ("groupnum", 1), ("groupsmooth", 2), ("startgroup", FLAG))
+    assert card.push_points([7, -3])
+    card.advance(3)
+    shown = [(card.read("mcsslope", i), card.read("pcsslope", i)) for i in range(4)]
+    assert shown == [(0, 0), (FLAG, 0), (FLAG, 0), (FLAG, 0)]
+    set_now(card, ("run", 0, 0), ("error", 0x40, 1))  # at once
+    card.advance(6)
+    assert [card.read("curvel", i) for i in range(4)] == [0] * 4
+    assert [card.read(name, i) for name in ("mcsslope", "pcsslope") for i in range(4)] == [0] * 8

@@ -75,6 +75,7 @@ def test_a_write_touches_only_the_words_it_is_wide() -> None:
     assert card.read_words(12, 0, 2) == (0x64, 0)
 
 
+@pytest.mark.covers("imc.param.homepos")
 def test_a_write_that_is_too_wide_also_writes_the_neighbour() -> None:
     card = ready_card()
     card.write_raw(address("homepos"), 77, 0, 2)
@@ -109,6 +110,7 @@ def test_a_read_that_is_too_wide_shows_the_neighbour() -> None:
         ("encsfactor", 0.0, 65535.999984741211),
     ],
 )
+@pytest.mark.covers("imc.param.encsfactor", "imc.param.gearoutvel", "imc.param.mcstrack", "imc.param.timer")
 def test_a_type_has_its_width_and_range(name: str, low: float, high: float) -> None:
     card = Card()
     each = parameter(name)
@@ -116,7 +118,8 @@ def test_a_type_has_its_width_and_range(name: str, low: float, high: float) -> N
     for value in (low, high, 0):
         card.write(name, value)
         assert card.read(name) == pytest.approx(value, abs=1e-12)
-    if each.type[0] in "SU":  # in a card file too
+    if each.type[0] in "SU":  # in a card file, and for other programs, too
+        assert [each.least, each.most] == pytest.approx([low, high], abs=1e-12)
         values, step = f"parameters = {{ {name} = %r }}\n", 1 if each.fraction_bits == 0 else 1.0
         text = values if each.scope == "G" else "[[axis]]\n" + values
         assert parse_card(text % low)
@@ -128,13 +131,18 @@ def test_a_type_has_its_width_and_range(name: str, low: float, high: float) -> N
     assert each.to_raw(high) == raw // (2 if low < 0 else 1) - 1 or each.type in ("F16", "R16")
 
 
+@pytest.mark.covers("imc.type.S16.32", "imc.type.S16.16")
 def test_ratios_have_exact_words() -> None:
     card = Card()
-    for ratio, words in ((0.5, (0, 0x8000, 0)), (-1.5, (0, 0x8000, 0xFFFE))):
+    # rounded to the nearest: 2/3 is AAAA AAAA.AAA...
+    thirds = ((2 / 3, (0xAAAB, 0xAAAA, 0)), (-2 / 3, (0x5555, 0x5555, 0xFFFF)))
+    for ratio, words in ((0.5, (0, 0x8000, 0)), (-1.5, (0, 0x8000, 0xFFFE)), *thirds):
         card.write("gearratio", ratio)
         assert card.read_words(175, 0, 3) == words
     card.write("gearratio", 32767.999999999767)
     assert card.read_raw(175, 0, 3) == 0x7FFF_FFFF_FFFF
+    card.write("gearoutvel", -2 / 3)
+    assert card.read_words(address("gearoutvel"), 0, 2) == (0x5555, 0xFFFF)
     card.write("gearoutvel", 100)
     assert card.read_raw(address("gearoutvel"), 0, 2) == 100 * 65536
 
@@ -146,6 +154,7 @@ def test_ratios_have_exact_words() -> None:
         if PARAMETERS[name].scope == "G" and PARAMETERS[name].access == "rw"
     )
 )
+@pytest.mark.covers("imc.param.gearoutvel")
 def test_words_of_the_card_are_the_same_for_every_axis() -> None:
     card = Card()
     cells = [
@@ -178,6 +187,7 @@ def test_read_only_words_refuse_to_be_written() -> None:
     assert card.read("naxis") == 3
 
 
+@pytest.mark.covers("imc.param.fwversion", "imc.param.naxis")
 def test_a_write_past_a_read_only_word_leaves_that_word_alone() -> None:
     card = ready_card()
     card.push(IFIFO, Write(address("cirswap"), 0x7FFF_0003, 0, 2))
@@ -190,6 +200,7 @@ def test_a_write_past_a_read_only_word_leaves_that_word_alone() -> None:
     [(0x00F0, 0x000F, 0x00F0, 0x000F), (0b110, 0b10, 0b10, 0b100), (0, 1 << 15, 0, 0x8000), (5, 0, 1, 4)],
 )
 @pytest.mark.covers("imc.concept.atomic_rmw")
+@pytest.mark.covers("imc.param.profiling")
 def test_bits_are_set_cleared_and_turned_when_the_instruction_leaves_the_queue(
     old: int, ors: int, xors: int, new: int
 ) -> None:
@@ -213,6 +224,7 @@ def test_several_writes_of_one_instruction_act_in_the_same_cycle() -> None:
     assert card.read("mcsvel") > 0
 
 
+@pytest.mark.covers("imc.param.mcsdist")
 def test_clear_of_one_axis_clears_what_the_card_counts() -> None:
     card = ready_card()
     set_now(card, ("emstop", 2), ("hpause", FLAG), ("breakp", -5))
@@ -229,6 +241,7 @@ def test_clear_of_one_axis_clears_what_the_card_counts() -> None:
     assert card.read("user16b0") == 7
 
 
+@pytest.mark.covers("imc.param.breakp", "imc.param.clear", "imc.param.emstop", "imc.param.hpause")
 def test_a_wide_write_to_hpause_writes_the_low_word_of_ticks() -> None:
     card = ready_card()
     card.advance(70_000)
@@ -238,6 +251,7 @@ def test_a_wide_write_to_hpause_writes_the_low_word_of_ticks() -> None:
     assert card.read("ticks") == 65536 + 1
 
 
+@pytest.mark.covers("imc.param.hpause")
 def test_an_unknown_place_is_refused_and_nothing_is_written() -> None:
     card = Card()
     before = card.state.memory.copy()
@@ -283,6 +297,7 @@ def test_a_card_file_gives_axes_queues_and_power_on_values() -> None:
         ("number_of_axes = 1\n[[axis]]\n[[axis]]", "2 axes"),
     ],
 )
+@pytest.mark.covers("imc.param.groupsmooth", "imc.param.mcsmaxvel", "imc.param.naxis")
 def test_a_wrong_card_file_says_where(text: str, message: str) -> None:
     with pytest.raises(ConfigurationError, match=message) as caught:
         parse_card(text)
@@ -355,6 +370,7 @@ def test_settings_of_an_axis_that_the_simulation_does_not_use_are_kept_for_each_
         ("out2", 625),
     ],
 )
+@pytest.mark.covers("imc.param.fixvel")
 def test_settings_of_the_card_without_a_known_meaning_are_kept_at_their_address(
     name: str, printed: int
 ) -> None:
@@ -383,6 +399,9 @@ def test_what_the_card_is_can_be_read_and_not_written() -> None:
 
 
 @pytest.mark.covers("imc.type.U16.32")
+@pytest.mark.covers(
+    "imc.param.clkdiv", "imc.param.fwversion", "imc.param.hwversion", "imc.param.naxis", "imc.param.sysclk"
+)
 def test_48_bits_without_a_sign_reach_to_65536() -> None:
     unsigned = Parameter("any", 0, "U16.32", "A", "rw", "")
     assert (unsigned.words, unsigned.fraction_bits, unsigned.is_signed) == (3, 32, False)

@@ -26,6 +26,7 @@ from support.imc_card import (
 @pytest.mark.covers(
     "imc.param.mcsgo", "imc.param.mcstgpos", "imc.param.mcsmoving", "imc.param.mcspos", "imc.concept.units"
 )
+@pytest.mark.covers("imc.param.profiling")
 def test_an_absolute_move_ends_on_its_target_in_the_time_of_its_ramps() -> None:
     card = ready_card()
     move_absolute(card, 6250, 1)
@@ -121,6 +122,7 @@ def test_a_move_is_stopped_by_writing_0_to_go() -> None:
     assert card.read("moving") == 0
 
 
+@pytest.mark.covers("imc.param.smooth")
 def test_an_abrupt_stop_zeroes_the_velocity() -> None:
     card = ready_card()
     move_absolute(card, 50000)
@@ -159,6 +161,7 @@ def test_continuous_motion_ramps_to_its_velocity_and_back_to_rest() -> None:
     assert card.read("mcspos") == sum(range(100)) + 100 * 51 + sum(range(100))
 
 
+@pytest.mark.covers("imc.param.mcsdecel")
 def test_continuous_motion_turns_through_standstill() -> None:
     card = ready_card()
     set_now(card, ("mcstgvel", 2.5), ("mcsdecel", 2))
@@ -169,14 +172,40 @@ def test_continuous_motion_turns_through_standstill() -> None:
 
 @pytest.mark.covers("imc.concept.position_overflow")
 @pytest.mark.parametrize(("overflow", "after"), [("origin", 50.0), ("wrap", -(2.0**31) + 50)])
+@pytest.mark.covers("imc.param.mcsaccel", "imc.param.sethome")
 def test_a_position_that_leaves_32_bits_does_not_disturb_the_motion(overflow: str, after: float) -> None:
-    card = ready_card(f'overflow = "{overflow}"')
-    set_now(card, ("mcstgvel", 100), ("mcsaccel", 100), ("homepos", 2**31 - 150), ("sethome", FLAG))
+    card = ready_card(f'overflow = "{overflow}"\n[[axis]]\nlag_s = 0.005\ngain = 50.0\n[[axis]]\n')
+    set_now(card, ("homepos", 2**31 - 150), ("sethome", FLAG))
+    card.advance(1)
+    set_now(
+        card,
+        ("mcstgvel", 100),
+        ("mcsaccel", 100),
+        ("poserrlim", 2000),
+        ("trackwin", 2000),
+        ("settlewin", 2000),
+    )
+    pace = (
+        ("synsrc", address("curpos"), 1),
+        ("syntype", FLAG, 1),
+        ("synsrcvar", 400, 1),
+        ("slavedist", 90, 1),
+    )
+    set_now(card, *pace, ("enasyn", FLAG, 1), ("startsyn", FLAG, 1))
     card.advance(2)
     names = ("curpos", "mcspos", "curvel", "error")
     assert [card.read(name) for name in names] == [after, after, 100, 0]
+    assert card.read("mcspos", 1) == 45  # half of the way of 400
+    places = []
+    for _ in range(40):
+        card.advance(1)
+        places.append((card.read("poserr"), card.read("curpos") - card.read("encp")))
+        assert (card.read("outtrack"), card.read("outsettle"), card.read("error")) == (0, 0, 0)
+    assert all(shown == way % 2**32 for shown, way in places)
+    assert (card.read("mcspos", 1), card.read("startsyn", 1)) == (90, 0)
 
 
+@pytest.mark.covers("imc.param.sethome")
 def test_a_relative_move_beyond_32_bits_is_refused_with_an_error_bit() -> None:
     card = ready_card()
     set_now(card, ("homepos", 2**31 - 100), ("sethome", FLAG), ("stopfilt", 0))
@@ -193,6 +222,7 @@ def test_a_relative_move_beyond_32_bits_is_refused_with_an_error_bit() -> None:
     "imc.param.pcsdist",
     "imc.param.pcspos",
 )
+@pytest.mark.covers("imc.param.pcsmoving", "imc.param.pcstgpos", "imc.param.pcsvel", "imc.param.shiftmaster")
 def test_a_superimposed_move_adds_to_whatever_the_axis_does() -> None:
     card = ready_card()
     set_now(card, ("shiftmaster", FLAG))
@@ -228,6 +258,7 @@ def test_shiftmaster_decides_whether_the_target_takes_part_in_a_superimposed_mov
     "imc.param.pcstrack",
     "imc.param.pcsmoving",
 )
+@pytest.mark.covers("imc.param.pcsgo", "imc.param.pcspos")
 def test_the_auxiliary_system_has_the_motions_of_the_main_one() -> None:
     card = ready_card()
     set_now(card, ("pcstgvel", 4), ("pcsaccel", 2))
@@ -272,6 +303,7 @@ def test_moving_lasts_as_long_as_smoothing_does() -> None:
 
 
 @pytest.mark.covers("imc.param.hpause")
+@pytest.mark.covers("imc.param.pcstgvel")
 def test_pause_brakes_every_axis_and_lets_it_go_on() -> None:
     card = ready_card()
     move_absolute(card, 3000, 0)
@@ -304,6 +336,7 @@ def test_haltstep_pauses_one_axis_at_once_or_with_its_deceleration() -> None:
 
 
 @pytest.mark.covers("imc.param.run", "imc.param.ena")
+@pytest.mark.covers("imc.param.poserr")
 def test_an_axis_out_of_run_plans_nothing_and_one_without_ena_moves_nothing() -> None:
     card = ready_card()
     set_now(card, ("run", 0, 1), ("ena", 0, 2))
@@ -378,6 +411,7 @@ def test_status_tells_whether_the_breakpoint_is_passed() -> None:
 
 
 @pytest.mark.covers("imc.param.sethome", "imc.param.homepos")
+@pytest.mark.covers("imc.param.pcspos")
 def test_sethome_makes_the_present_position_the_origin() -> None:
     card = ready_card()
     move_absolute(card, 700)
@@ -392,6 +426,7 @@ def test_sethome_makes_the_present_position_the_origin() -> None:
     assert card.kernel.servo.actual[0] == 725
 
 
+@pytest.mark.covers("imc.param.mcsdist")
 def test_moves_of_several_axes_in_one_instruction_start_together() -> None:
     card = ready_card()
     writes = [setting("mcsdist", 300, i) for i in range(4)] + [setting("mcsgo", FLAG, i) for i in range(4)]
@@ -401,14 +436,20 @@ def test_moves_of_several_axes_in_one_instruction_start_together() -> None:
 
 
 @pytest.mark.covers("imc.param.clear")
+@pytest.mark.covers("imc.param.aiolat", "imc.param.encs", "imc.param.pcspos", "imc.param.pcstgpos")
 def test_clear_puts_an_axis_at_zero_without_errors() -> None:
     card = ready_card()
     move_absolute(card, 500)
     card.wait()
-    set_now(card, ("error", 3), ("clear", FLAG))
+    card.turn_handwheel(0, 70)
+    card.state.memory[0, address("aiolat")] = 5
+    set_now(card, ("error", 3), ("pcsdist", -37), ("pcsgo", FLAG), ("breakp", -1000))
+    card.advance(70)
+    names = ("mcspos", "mcstgpos", "curpos", "encp", "pcspos", "pcstgpos", "error", "encs", "aiolat")
+    assert all(card.read(n) != 0 for n in names if not n.startswith("pcs"))
+    set_now(card, ("clear", FLAG))
     card.advance(1)
-    names = ("mcspos", "mcstgpos", "curpos", "encp", "pcspos", "pcstgpos", "error", "encs", "aiolat", "clear")
-    assert [card.read(n) for n in names] == [0] * len(names)
+    assert [card.read(n) for n in (*names, "clear")] == [0] * 10
 
 
 @pytest.mark.covers("imc.param.ciraxis", "imc.param.cirpos")
@@ -449,6 +490,7 @@ def test_the_main_encoder_is_scaled_and_shows_its_speed() -> None:
 
 
 @pytest.mark.covers("imc.param.ena", "imc.param.encpctr")
+@pytest.mark.covers("imc.param.poserr")
 def test_feedback_can_follow_the_command() -> None:
     card = ready_card()
     set_now(card, ("encpctr", -0x8000), ("ena", 0))
@@ -460,6 +502,7 @@ def test_feedback_can_follow_the_command() -> None:
 @pytest.mark.covers("imc.param.profiling", "imc.param.moving", "imc.param.mcsmoving", "imc.param.pcsmoving")
 @pytest.mark.covers("imc.param.motion")
 @pytest.mark.parametrize("name", ["mcsgo", "pcsgo", "mcstgvel", "pcstgvel"])
+@pytest.mark.covers("imc.param.pcsgo", "imc.param.pcstgvel")
 def test_an_axis_that_has_just_been_told_to_move_shows_it_before_the_next_cycle(name: str) -> None:
     card = ready_card()
     system = name[:3]
@@ -471,6 +514,7 @@ def test_an_axis_that_has_just_been_told_to_move_shows_it_before_the_next_cycle(
 
 
 @pytest.mark.covers("imc.param.encpfactor", "imc.param.sethome")
+@pytest.mark.covers("imc.param.encpvel")
 def test_the_origin_is_set_in_the_scale_of_the_encoder() -> None:
     card = ready_card("number_of_axes = 3\n[[axis]]\n[[axis]]\n[[axis]]\ncounts_per_pulse = 4.0\n")
     move_absolute(card, 700, 2)

@@ -229,6 +229,7 @@ def test_a_gear_that_waits_is_kept_when_the_coupling_before_it_is_complete() -> 
 
 
 @pytest.mark.parametrize("ended", ["run", "clear", "stop"])
+@pytest.mark.covers("imc.param.clear")
 def test_what_ends_a_gear_that_waits_shows_in_its_flags_and_startsyn_does_not_stay(ended: str) -> None:
     card = owned(own.RUNS)
     arm(card)

@@ -65,6 +65,7 @@ def test_a_segment_has_its_speed_and_the_acceleration_of_its_space(space: int) -
 
 
 @pytest.mark.covers("imc.param.segtgvel1")
+@pytest.mark.covers("imc.param.pathaxisnum1")
 def test_a_plain_segment_takes_the_speeds_in_force_and_needs_no_axis_count() -> None:
     card = ready_card()
     enable_path(card, 0, 1)
@@ -302,6 +303,7 @@ def test_smoothing_acts_behind_the_path() -> None:
 
 
 @pytest.mark.parametrize("smooth", [0, 7])
+@pytest.mark.covers("imc.param.mcsmoving", "imc.param.segmap_x1", "imc.param.smooth")
 def test_an_axis_that_leaves_the_mapping_between_joined_segments_arrives(smooth: int) -> None:
     card = ready_card()
     set_now(card, *(("smooth", smooth, i) for i in range(3)))
@@ -316,6 +318,7 @@ def test_an_axis_that_leaves_the_mapping_between_joined_segments_arrives(smooth:
     assert [card.read(name, 0) for name in ("moveinpath1", "moving", "mcsmoving")] == [0, 0, 0]
 
 
+@pytest.mark.covers("imc.param.segmap_x1")
 def test_an_axis_that_has_left_the_mapping_takes_a_command_behind_the_joint() -> None:
     card = ready_card()
     enable_path(card, 0, 1)
@@ -378,6 +381,7 @@ def test_points_in_a_path_queue_are_gone_along_with_the_speed_of_the_space(space
 
 
 @pytest.mark.covers("imc.param.pathacc1", "imc.param.feedoverride")
+@pytest.mark.covers("imc.param.pathaxisnum1", "imc.param.segtgvel1")
 def test_points_slow_down_for_what_follows_and_take_the_override() -> None:
     card = ready_card()
     enable_path(card, 0)
@@ -397,6 +401,7 @@ def test_points_slow_down_for_what_follows_and_take_the_override() -> None:
 
 
 @pytest.mark.parametrize(("named", "points"), [(0, (3, 4)), (2, (3, 4, 5))])
+@pytest.mark.covers("imc.param.pathaxisnum1", "imc.param.segtgvel1")
 def test_points_that_are_not_whole_are_an_error(named: int, points: tuple[int, ...]) -> None:
     card = ready_card()
     enable_path(card, 1, 3)

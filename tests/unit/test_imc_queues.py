@@ -75,6 +75,7 @@ def test_a_wait_for_ever_in_one_queue_leaves_the_others_alone() -> None:
 
 
 @pytest.mark.parametrize("release", ["qwaittime", "clrqfifo", "clearimc"])
+@pytest.mark.covers("imc.param.clrqfifo")
 def test_a_wait_is_released_by_its_time_register_or_by_clearing(release: str) -> None:
     card = ready_card()
     card.push(QFIFO, WaitTime(-1))
@@ -189,13 +190,14 @@ def test_count_registers_show_the_words_that_wait_and_clear_when_written() -> No
     names = ("clrififo", "clrqfifo", "clrPFIFO1", "clrPFIFO2", "cfifocnt")
     card.push(QFIFO, WaitTime(0))
     card.advance(1)
-    for queue in (IFIFO, QFIFO, PFIFO1, PFIFO2):
-        card.push(queue, Write(address("user32b0"), 1, 0, 2))
-    card.push_points([1, 2, 3])
-    assert [card.read(name) for name in names] == [4, 4, 4, 4, 3]
-    for name in names[1:]:
+    for k, queue in enumerate((IFIFO, QFIFO, PFIFO1, PFIFO2)):
+        for _ in range(7 + 2 * k):
+            card.push(queue, Write(address("user32b0"), 1, 0, 2))
+    card.push_points(range(301))
+    assert [card.read(name) for name in names] == [28, 36, 44, 52, 301]
+    for k, name in enumerate(names):
         card.write(name, FLAG)
-        assert card.read(name) == 0
+        assert [card.read(each) for each in names] == [0] * (k + 1) + [28, 36, 44, 52, 301][k + 1 :]
     card.push(PFIFO1, WaitTime(1))
     send(card, IFIFO, ("clearimc", FLAG))
     card.advance(1)

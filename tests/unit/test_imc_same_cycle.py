@@ -70,6 +70,7 @@ def test_a_move_beside_the_end_of_another_motion_is_not_lost(
 
 @pytest.mark.parametrize("before", [lib.IMC_MoveVelocity, lib.IMC_MoveAbsolute, lib.IMC_MoveRelative])
 @pytest.mark.covers("imc.IMC_GearFree")
+@pytest.mark.covers("imc.IMC_MoveRelative")
 def test_a_gear_behind_a_move_of_the_same_cycle_counts(
     program: Program, before: Callable[..., object]
 ) -> None:
@@ -104,6 +105,7 @@ def test_the_start_of_a_synchronous_motion_behind_a_move_of_the_same_cycle_count
     assert program.get("curpos", 2) == 500
 
 
+@pytest.mark.covers("imc.IMC_GearInTime")
 def test_a_velocity_stays_until_a_gear_that_waits_for_its_start(program: Program) -> None:
     program.ok(lib.IMC_MoveVelocity, 3 * ONE, 1, IF)
     program.ok(lib.IMC_GearInTime, 1.0, 0, 0, 50, 1, IF)

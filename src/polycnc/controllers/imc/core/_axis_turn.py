@@ -19,6 +19,7 @@ from polycnc.controllers.imc.core._words import (
     put16,
     put32,
     put48,
+    wrap32,
     wrap48,
 )
 from polycnc.kernel import compiled
@@ -63,6 +64,32 @@ def smoothed(s: CardState, i: int, step: int) -> int:
 
 
 @compiled
+def _shift_pace(s: CardState, i: int, jump: int) -> None:
+    """Let what the positions of axis `i` pace not notice that they have gone back by a turn."""
+    for j in range(s.axis.shape[0]):
+        axis = s.axis[j]
+        source = axis["sync_source"] - 1
+        if (
+            axis["sync_share"] >= 0.0
+            and axis["sync_axis"] == i
+            and source in (addr.CURPOS_FRACTION, addr.POS_FRACTION, addr.ENCP_FRACTION)
+        ):
+            axis["sync_from"] = wrap32(axis["sync_from"] + jump)
+
+
+@compiled
+def _move_command(s: CardState, i: int, velocity: int) -> None:
+    """Move the composite command; where it restarts at the origin, the encoder's position goes with it."""
+    m = s.memory
+    before = get48(m, i, addr.CURPOS_FRACTION)
+    position = moved(s, before, velocity)
+    put48(m, i, addr.CURPOS_FRACTION, position)
+    jump = position - before - velocity
+    if jump != 0:
+        put48(m, i, addr.ENCP_FRACTION, wrap48(get48(m, i, addr.ENCP_FRACTION) + jump))
+
+
+@compiled
 def _wrap_ring(s: CardState, i: int) -> None:
     """Keep a ring axis within its ring: the coordinates go back by a turn, the motion does not notice."""
     m = s.memory
@@ -81,6 +108,7 @@ def _wrap_ring(s: CardState, i: int) -> None:
     put48(m, i, addr.POS_FRACTION, wrap48(get48(m, i, addr.POS_FRACTION) - turn * size))
     put48(m, i, addr.ENCP_FRACTION, wrap48(get48(m, i, addr.ENCP_FRACTION) - turn * size))
     put16(m, i, addr.CIRSWAP, get16(m, i, addr.CIRSWAP) + turn)
+    _shift_pace(s, i, -turn * (size >> 16))
 
 
 @compiled
@@ -113,6 +141,8 @@ def axis_turn(s: CardState, i: int) -> None:
         and axis["lag"] == 0
         and axis["recent"] == 0
         and get32(m, i, addr.CURVEL) == 0
+        and m[i, addr.SLOPE] == 0
+        and m[i, addr.PCS + addr.SLOPE] == 0
         and get_u16(m, i, addr.SMOOTH) == axis["smooth"]
     ):
         return
@@ -127,7 +157,7 @@ def axis_turn(s: CardState, i: int) -> None:
     before = get32(m, i, addr.CURVEL)
     put32(m, i, addr.CURVEL, clip32(velocity))
     if velocity != 0:
-        put48(m, i, addr.CURPOS_FRACTION, moved(s, get48(m, i, addr.CURPOS_FRACTION), velocity))
+        _move_command(s, i, velocity)
         if m[i, addr.ENA] != 0:
             axis["machine"] += velocity
         if m[i, addr.CIRAXIS] != 0:

@@ -18,6 +18,7 @@ from polycnc.controllers.imc.core._words import (
     put16,
     put32,
     put48,
+    wrap32,
     wrap48,
 )
 from polycnc.controllers.imc.core._write_effects import keep_capture
@@ -125,7 +126,7 @@ def flags_cycle(s: CardState, i: int) -> None:
     """Show what axis `i` is doing, and whether it has settled."""
     axis, m = s.axis[i], s.memory
     position = get48(m, i, addr.CURPOS_FRACTION) >> 16
-    error = position - (get48(m, i, addr.ENCP_FRACTION) >> 16)
+    error = wrap32(position - (get48(m, i, addr.ENCP_FRACTION) >> 16))
     error = min(max(error, -32768), 32767)
     put16(m, i, addr.POSERR, error)
     unsettled = abs(error) > get_u16(m, i, addr.SETTLEWIN)

@@ -27,6 +27,7 @@ from polycnc.controllers.imc.core._write_effects import row_of
 from polycnc.kernel import compiled
 
 _ONE_32 = 1 << 32
+_RESTART = 1 << 31  # by how much a position jumps that restarts at the origin
 
 
 @compiled
@@ -144,7 +145,10 @@ def _share(s: CardState, i: int) -> float:
     if axis["sync_span"] <= 0:
         return 1.0
     source = _read(s, axis["sync_source"], axis["sync_axis"])
-    return float(abs(wrap32(source - axis["sync_from"])) / axis["sync_span"])
+    way = wrap32(source - axis["sync_from"])
+    if axis["sync_source"] != addr.TICKS and axis["sync_span"] < _RESTART // 2:
+        way = (way + _RESTART // 2) % _RESTART - _RESTART // 2  # a position may have restarted at the origin
+    return float(abs(way) / axis["sync_span"])
 
 
 @compiled
