@@ -6,8 +6,10 @@ import asyncio
 from collections.abc import Callable
 from dataclasses import dataclass, field
 
+import pytest
+
 from polycnc.machine import Clock
-from polycnc.servers.machines import Keeper
+from polycnc.servers.machines import Keeper, Turns
 
 CYCLE_S, COST_S, APART_S = 0.001, 0.0002, 0.00013
 
@@ -29,11 +31,14 @@ class Slow:
     wall: Wall
     busy: bool = False
     clock: Clock = field(default_factory=lambda: Clock(CYCLE_S))
+    cost_s: float = COST_S
     passed: list[int] = field(default_factory=list)
     is_followed: bool = True
 
     def advance(self, cycles: int, *, is_enough: Callable[[], bool] | None = None) -> int:
-        self.wall.time_s += COST_S
+        self.wall.time_s += self.cost_s
+        if is_enough is not None and is_enough():
+            cycles = 1
         self.clock.cycles += cycles
         self.passed.append(cycles)
         return cycles
@@ -70,5 +75,35 @@ def test_a_step_that_is_asked_for_is_there_for_the_next_request() -> None:
             keeper.submit(lambda: device.clock.cycles, seen.append)
         assert seen == [3, 14, 16]
         keeper.close()
+
+    asyncio.run(run())
+
+
+@pytest.mark.parametrize("asked", [False, True])
+def test_machines_whose_time_is_costly_leave_room_for_requests(asked: bool) -> None:
+    """Twenty machines of which every cycle costs more than it lasts, looked at between two turns of the event loop."""
+
+    async def run() -> None:
+        wall = Wall()
+        turns = Turns(wall)
+        devices = [Slow(wall, busy=True, cost_s=0.017) for _ in range(20)]
+        keepers = [Keeper(each, wall, share_s=0.0005, turns=turns) for each in devices]
+        for keeper in keepers:
+            keeper.start()
+            keeper.pace.step(100_000)
+            keeper.submit(lambda: None, lambda _: None)  # which finds the steps that were asked for
+        answers: list[None] = []
+        for _ in range(200):
+            begun_s = wall.time_s
+            for keeper in keepers if asked else ():
+                assert keeper.submit(lambda: None, answers.append)
+            await asyncio.sleep(0)
+            assert wall.time_s - begun_s < 0.05
+        for keeper in keepers:
+            keeper.close()
+        times = [len(each.passed) for each in devices]
+        assert min(times) > 2
+        assert asked or max(times) - min(times) <= 1
+        assert len(answers) == (4000 if asked else 0)
 
     asyncio.run(run())

@@ -115,3 +115,19 @@ def test_an_alarm_that_the_control_does_not_have_is_refused_and_changes_nothing(
     with pytest.raises(ControlError, match=r"there is no (alarm|axis)"):
         made.put_alarm(name, axis=axis)
     assert (made.status(), made.alarms.history()) == (before, ())
+
+
+@pytest.mark.parametrize("cut", [1, 37])
+def test_an_alarm_of_the_machine_brings_none_of_a_block_that_is_not_reached(cut: int) -> None:
+    made = Control(cnc_machine(), dialect="fanuc", data=ControlData(reference_required=False))
+    made.programs.create("PART", "G1 X20 F300\nG177 X5\nM30\n")
+    made.select_program("PART")
+    made.cycle_start()
+    made.advance(50)
+    assert made.channels[0].run is not None
+    assert made.channels[0].run.error is not None  # known, since the block is prepared ahead
+    made.put_alarm("following_error", axis="Y")
+    for _ in range(74 // cut):
+        made.advance(cut)
+    assert made.channels[0].run_state is RunState.ALARM
+    assert [each.name for each in made.alarms.active] == ["following_error"]

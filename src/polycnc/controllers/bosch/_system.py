@@ -9,6 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
+from polycnc.cnc import RunState
 from polycnc.controllers.bosch._axes import SystemAxes
 from polycnc.controllers.bosch._channel_data import ChannelData
 from polycnc.controllers.bosch._channel_ports import AttachedRuns, ChannelPorts
@@ -219,8 +220,10 @@ class BoschSystem:
             run = self.channels.run(number)
             if run is None:
                 continue
-            found = [(each.code, Category.PART_PROGRAM, each.what) for each in run.channel.errors]
-            if run.alarm is not None:
+            found = []  # of blocks that the program has got to, not of those that are prepared ahead
+            if run.state is RunState.ALARM and run.alarm is None:
+                found = [(each.code, Category.PART_PROGRAM, each.what) for each in run.channel.errors]
+            elif run.alarm is not None:
                 found.append((run.alarm.code, Category.CONTROL_OR_DRIVE, run.alarm.text))
             known = self._noted.get(number)
             count = known[1] if known is not None and known[0] is run.channel else 0

@@ -16,6 +16,7 @@ from polycnc.servers.machines._owner import HostOwner, Keeper, Kept, Owner
 from polycnc.servers.machines._programs import MemoryPrograms, Programs
 from polycnc.servers.machines._scenario import Nothing, Scenario, ServedDevice
 from polycnc.servers.machines._screens import Screen, ScreenShown, Tasks, TaskShown
+from polycnc.servers.machines._turns import Turns
 from polycnc.servers.machines._values import (
     NO_PARAMETERS,
     NO_SIGNALS,
@@ -60,6 +61,7 @@ __all__ = [
     "TaskShown",
     "Tasks",
     "Treatment",
+    "Turns",
     "Values",
     "Wanted",
     "Watch",

@@ -12,6 +12,7 @@ from collections.abc import Callable
 from typing import Any, Protocol, TypeVar
 
 from polycnc.machine import Clock, Host, HostError, Pace, Wall
+from polycnc.servers.machines._turns import Turns
 
 R = TypeVar("R")
 _BUSY_BEAT_S = 0.1  # as watches look; whoever asks, or is told more often, lets time pass himself
@@ -74,7 +75,8 @@ class Keeper:
     Time is let pass before a request and, from `start` on, from time to time, for at most `share_s` of the wall clock
     in one go, so that nobody waits long for others whose time is costly. Requests that follow each other closely find
     the device as it is for nine times what catching up has cost, at most 5 ms: then it costs a tenth of the time, and
-    not a cycle for each of them. A clock that is late by half a second drops its lag and tells `on_late` how much.
+    not a cycle for each of them. Keepers of one event loop share its `turns`: requests come before time. A clock that
+    is late by half a second drops its lag and tells `on_late` how much.
     `failed` ends with the error if time cannot pass.
     """
 
@@ -86,7 +88,9 @@ class Keeper:
         rate: float = 1.0,
         share_s: float = 0.01,
         on_late: Callable[[float], None] | None = None,
+        turns: Turns | None = None,
     ) -> None:
+        self._turns = turns or Turns(wall, math.inf)
         self.pace = Pace(wall, rate, changed=self._soon)
         self._wall = wall
         self._share_s = share_s
@@ -97,6 +101,7 @@ class Keeper:
         self._due_s = math.inf  # when the next beat is planned, by the event loop
         self._latest_s = 0.0
         self._rests_until_s = -math.inf
+        self._has_changed = False
         self.pace.forget()
 
     def start(self) -> None:
@@ -109,7 +114,7 @@ class Keeper:
         if self.failed.done():
             return False
         try:
-            if self._wall.now_s() >= self._rests_until_s:
+            if self._is_wanted():
                 self._catch_up()
             result = command()
         except Exception as error:
@@ -123,8 +128,16 @@ class Keeper:
         if self._timer is not None:
             self._timer.cancel()
             self._timer = None
+        self._turns.forget(self._beat)
         if not self.failed.done():
             self.failed.cancel()
+
+    def _is_wanted(self) -> bool:
+        """Whether time has to pass before a request."""
+        if self._has_changed:
+            self._has_changed = False
+            return True
+        return self._wall.now_s() >= self._rests_until_s and self._turns.may_catch_up()
 
     def _catch_up(self, *, whole: bool = True) -> bool:
         """Let pass what is due, within its share of the wall clock; tell whether there is more.
@@ -163,9 +176,16 @@ class Keeper:
         loop = asyncio.get_running_loop()
         now_s = loop.time()
         self._latest_s = max(self._latest_s, now_s - self._due_s)
-        beat_s = 0.0 if late else self._beat_s()
-        self._due_s = min(self._due_s, now_s) if late else now_s + beat_s
-        self._timer = loop.call_later(beat_s, self._beat)
+        if late:
+            self._due_s = min(self._due_s, now_s)
+            self._turns.wait(self._beat)
+        else:
+            self._plan(self._beat_s())
+
+    def _plan(self, beat_s: float) -> None:
+        loop = asyncio.get_running_loop()
+        self._due_s = loop.time() + beat_s
+        self._timer = loop.call_later(beat_s, self._turns.wait, self._beat)
 
     def _beat_s(self) -> float:
         if not self._served.busy:
@@ -174,10 +194,10 @@ class Keeper:
 
     def _soon(self) -> None:
         """Look soon: the rate has changed, or steps are due."""
-        self._rests_until_s = -math.inf
+        self._has_changed = True
         if self._timer is not None:
             self._timer.cancel()
-            self._timer = asyncio.get_running_loop().call_later(0.0, self._beat)
+            self._turns.wait(self._beat)
 
     def _fail(self, error: Exception) -> None:
         if not self.failed.done():

@@ -19,6 +19,7 @@ from polycnc.servers.machines import (
     Scenario,
     ServedDevice,
     ServedMachine,
+    Turns,
     Wanted,
     tell_errors,
 )
@@ -72,8 +73,9 @@ class Serving:
             UsageError: A machine cannot be made, or a door cannot be opened; `close` closes the others.
         """
         tell_errors(asyncio.get_running_loop(), self._tell)
+        turns = Turns(self.wall)
         for each in wanted:
-            self._make(each, _SHARE_S / len(wanted))
+            self._make(each, _SHARE_S / len(wanted), turns)
         asked = [(kind, at, [self._of(each)]) for each in wanted for kind, at in each.doors]
         asked += [
             (kind, at, list(filter(kind.serves, self.machines)) or self.machines) for kind, at in shared
@@ -138,7 +140,7 @@ class Serving:
     def _of(self, wanted: MachineWanted) -> ServedMachine:
         return next(each for each in self.machines if each.name == wanted.machinery.name)
 
-    def _make(self, wanted: MachineWanted, share_s: float) -> None:
+    def _make(self, wanted: MachineWanted, share_s: float, turns: Turns) -> None:
         name = wanted.machinery.name
         if any(each.name == name for each in self.machines):
             raise UsageError(f"two machines are called {name}", hint="Give each a name of its own.")
@@ -158,7 +160,9 @@ class Serving:
             None if wanted.scenario is None else wanted.scenario(made.device),
             again=None if wanted.program is None else _again(made),
         )
-        keeper = Keeper(served, self.wall, rate=wanted.rate, share_s=share_s, on_late=self.on_late)
+        keeper = Keeper(
+            served, self.wall, rate=wanted.rate, share_s=share_s, on_late=self.on_late, turns=turns
+        )
         machine = ServedMachine(
             name,
             wanted.kind,
