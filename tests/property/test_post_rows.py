@@ -80,13 +80,19 @@ def test_every_format_is_written_as_by_python(form: str, points: list[list[float
     assert posted(used, text, 0) == posted(used, text, 1 << 30)
 
 
+MACRO = '!-G01!$X$$Y$"/"$Z$$F$\n  $X$ $Y$  \n@0@(at $X$)  '
+"""Lines of moves with a text among them, of blanks and what is left out if it is the same, and of text."""
+
+
 def with_format(form: str) -> ControlFile:
     """Return a control file that numbers its blocks up to 90 and writes X in a format."""
     parameters = {"sequence_place": 1, "sequence_step": 7, "sequence_start": 3, "sequence_highest": 90}
-    text = control_text({**parameters, "separator": "  "}, {"LINEAR": '!-G01!$X$$Y$"/"$Z$$F$\n@0@(at $X$)'})
+    text = control_text({**parameters, "separator": "  "}, {"LINEAR": MACRO})
     plain = 'format = "X%.3f"\nmodal = true'
     assert plain in text
-    return parse_control(text.replace(plain, form))
+    return parse_control(
+        text.replace(plain, form).replace("[g_code", "[nc_code.Y]\nseparator = false\n[g_code", 1)
+    )
 
 
 def test_numbers_are_written_by_their_exact_value() -> None:

@@ -122,6 +122,24 @@ def test_what_the_tool_path_has_switched() -> None:
     assert told(text, "SPINDLE_CCW") == ["S4 C9 N12 M2 W1"]
 
 
+def test_what_the_spindle_does_next_is_known_beside_the_next_tool() -> None:
+    text = (
+        "LOADTL/3\nSPINDL/RPM,900,CCLW\nFEDRAT/90,MMPM\nGOTO/1,2,3\nLOADTL/12\nSPINDL/OFF\nSPINDL/1700,CLW\n"
+        "GOTO/7,2,3\nSPINDL/ON\nSPINDL/80,SMM,CLW\nGOTO/8,2,3\nEND\n"
+    )
+    coming = '$NEXTTOOL$" "$NEXTSPINDLE$" "$NEXTSPINDLESTATE$'
+    spindle = {f"SPINDLE_{sense}": "<N=SPINDLEMODE>!M03!" for sense in ("CW", "CCW")}
+
+    def shown(macro: str) -> list[str]:
+        return written(text, {**spindle, macro: f'<N=SPINDLEMODE>"= "{coming}'})[0]
+
+    assert shown("PROGRAM_START") == ["3 900 4"]
+    assert shown("TOOL_CHANGE") == ["12 900 4", "0 1700 3"]
+    assert shown("SPINDLE_CCW") == ["12 1700 3"]
+    assert shown("SPINDLE_CW") == ["0 1700 3", "0 0 3", "0 0 5"]  # a surface speed is no speed in rpm
+    assert shown("LINEAR") == ["12 1700 3", "0 1700 3", "0 0 5"]
+
+
 def test_first_motions_of_program_operation_and_tool() -> None:
     text = (
         "FEDRAT/90,MMPM\nTOOL PATH/A\nLOADTL/3\nGOTO/1,2,3\nGOTO/4,2,3\nEND-OF-PATH\nTOOL PATH/B\nGOTO/5,2,3\n"
@@ -169,7 +187,9 @@ def test_a_work_offset_that_no_macro_writes_is_an_error() -> None:
     assert posted(offsets(None, 1), control())[0]
 
 
-@pytest.mark.parametrize("name", ["SPINDLESTATE", "NEXTTOOL", "FIRSTMOTION", "NUMBER1", "WORKOFFSET"])
+@pytest.mark.parametrize(
+    "name", ["SPINDLESTATE", "NEXTTOOL", "NEXTSPINDLE", "FIRSTMOTION", "NUMBER1", "WORKOFFSET"]
+)
 def test_a_macro_cannot_set_what_events_keep(name: str) -> None:
     with pytest.raises(ConfigurationError, match=f"{name} is set by events, not by macros"):
         control(macros={"STOP": f"<{name}=5>!M00!"})

@@ -786,7 +786,7 @@ def test_a_feed_per_revolution_that_a_control_file_cannot_say_is_an_error(words:
 @pytest.mark.parametrize(
     ("statement", "line", "what", "hint"),
     [
-        ("ROTABL/30,INCR", 8, "ROTABL moves the tool or its coordinates", "Let the CAM system write points"),
+        ("ROTABL/30,INCR", 8, "ROTABL moves the tool or its coordinates", "write points with the tool axis"),
         (
             "CYCLE/DEEP,DEPTH,12,CLEAR,2",
             8,

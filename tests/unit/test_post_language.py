@@ -390,8 +390,30 @@ def test_sequence_numbers_step_and_begin_again() -> None:
 def test_lines_of_blanks_and_of_empty_texts_are_no_blocks() -> None:
     assert blocks_of('\n  \n""\n&X&\n@1@\n\',5\'\n"  "', sequence_place=1) == ["N10  "]
     assert blocks_of(" <V1=2> \t&X&  @1@ <V2=V1>\t\n A <V1=3> \nB \t", sequence_place=1) == [
-        "N10 A ",
+        "N10 A  ",
         "N20B \t",
+    ]
+
+
+@pytest.mark.covers("post.string.literal")
+@pytest.mark.parametrize(
+    ("macro", "block"),
+    [
+        ("ABC   ", "ABC   "),
+        ("$F$   ", "F2   "),
+        ("!G90! \t", "G90 \t"),
+        ("  A  B <V1=1>  &F&  ", "  A  B     "),
+        ('AB"   "', "AB   "),
+        ("($COMMENT$)  @1@ ", "(C)   "),
+    ],
+)
+def test_blanks_are_written_as_they_stand_wherever_something_is(macro: str, block: str) -> None:
+    words: dict[str, float | str] = {"F": 2.0, "COMMENT": "C"}
+    assert blocks_of(macro, words=words) == [block]
+    assert blocks_of('<ENDOFLINE=";">' + macro, words=words) == [f"{block};"]
+    assert blocks_of(f"$F$\n$F$   \n  !-G90!  $F$\n  !-G90!  $F$  \n{macro[:0]}", words=words) == [
+        "F2",
+        "  G90  ",
     ]
 
 
@@ -464,6 +486,32 @@ def test_a_separator_stands_before_words(macro: str, numbered: list[str], plain:
     assert blocks_of(macro, separator=" ", sequence_place=1) == numbered
     assert blocks_of(macro, separator=" ") == plain
     assert blocks_of(macro) == [block.replace(" ", "") for block in plain]
+
+
+@pytest.mark.parametrize(
+    ("macro", "block"),
+    [
+        ("!G90!$X$$Y$!-G00!", "G90X0.000 Y0.000G00"),
+        ("!-G00!!G00!!G90!", "G00G00 G90"),
+        ("$COMMENT$$X$$Y$", "X0.000 Y0.000"),
+        ("<OUTPUTORDER=1>$Y$!G00!", "G00 Y0.000"),
+    ],
+)
+def test_single_codes_and_variables_go_without_a_separator(macro: str, block: str) -> None:
+    tables = TABLES
+    for key in ("G00", "X"):
+        entry = f"\n{key} = {{ order"
+        assert tables.count(entry) == 1
+        tables = tables.replace(entry, f"\n{key} = {{ separator = false, order")
+    written: list[str] = []
+    control_with({"RAPID": macro}, tables=tables, separator=" ").start(written.append).call("RAPID")
+    assert written == [f"{block}\n"]
+
+
+def test_only_what_has_a_separator_goes_without_one() -> None:
+    tables = TABLES.replace("[g_code]", "[nc_code.TOOLCHANGE]\nseparator = false\n\n[g_code]", 1)
+    with pytest.raises(ConfigurationError, match="there is no separator before 'TOOLCHANGE'"):
+        control_with({"RAPID": "!G00!"}, tables=tables, separator=" ")
 
 
 @pytest.mark.covers(

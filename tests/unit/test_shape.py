@@ -49,7 +49,6 @@ EXCEPTIONS: dict[str, tuple[str, ...]] = {
         "post/output/_motion.py Motion",
         "post/output/_program.py",
         "post/output/_program.py _Driver",
-        "post/output/_program.py _Driver._spindle",
     ),
     "one branch for each word of a format of tool paths": (
         "post/tool_path/_cl_cycles.py read_cycle",

@@ -15,7 +15,8 @@ from dataclasses import dataclass, replace
 class Piece:
     """A part of a block: a `constant`, or else the name of the Python variable that holds its text.
 
-    A word (code, function variable, sequence number) begins with the separator.
+    A word (code, function variable, sequence number) begins with the separator. A constant that is not `sure` is
+    blanks: they make no block alone.
     """
 
     order: int
@@ -35,7 +36,7 @@ def is_empty_test(pieces: Sequence[Piece]) -> str:
     """Return the Python condition that something is to be written; "" if it always is."""
     if any(piece.sure for piece in pieces):
         return ""
-    return " or ".join(piece.variable for piece in pieces)
+    return " or ".join(piece.variable for piece in pieces if piece.variable) or "False"
 
 
 def by_order(pieces: Sequence[Piece]) -> tuple[Piece, ...]:
@@ -62,7 +63,7 @@ def text_follows(pieces: Sequence[Piece]) -> str:
     """Return Python for "the first piece that is not empty is text"; "" if it never is."""
     test = ""
     for piece in reversed(pieces):
-        if piece.sure:
+        if piece.sure or piece.constant:
             test = "" if piece.is_word else "True"
         elif not piece.is_word:
             test = f"({piece.variable} or {test})" if test else piece.variable
@@ -81,7 +82,7 @@ def _surplus(pieces: Sequence[Piece], length: int) -> str:
     answers: list[tuple[str, str]] = []
     for piece in pieces:
         answers.append((piece.variable, str(length) if piece.is_word else "0"))
-        if piece.sure:
+        if piece.sure or piece.constant:
             break
     while len(answers) > 1 and answers[-1][1] == answers[-2][1]:
         answers.pop()

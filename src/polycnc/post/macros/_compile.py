@@ -16,7 +16,7 @@ from polycnc.post.macros._blocks import Piece, by_order, escaped, is_empty_test,
 from polycnc.post.macros._elements import Assignment, Code, Element, Initialisation, Numbering, Text, Word
 from polycnc.post.macros._expression import Condition, Name, python_condition, python_value
 from polycnc.post.macros._format import NumberFormat
-from polycnc.post.macros._macro import If, Line, Statement, elements_of, without_margins
+from polycnc.post.macros._macro import If, Line, Statement, elements_of, is_blank
 from polycnc.post.macros._symbols import (
     ENDOFLINE,
     LINE_TEXTS,
@@ -49,6 +49,10 @@ class Style:
     number_start: int
     number_step: int
     number_highest: int
+
+    def before(self, symbol: CodeSymbol | VariableSymbol) -> str:
+        """Return what separates a code or variable from what stands before it."""
+        return self.separator if symbol.separated else ""
 
 
 TracedMacro: TypeAlias = Traced[tuple[int, int]]
@@ -148,7 +152,7 @@ class _Writer:
     def _line(self, line: Line) -> None:
         pieces: list[Piece] = []
         self._temporaries = 0
-        for element in without_margins(line.elements):
+        for element in line.elements:
             self.out.place = (line.number, element.at)
             try:
                 pieces += self._element(element)
@@ -167,7 +171,7 @@ class _Writer:
     def _element(self, element: Element) -> list[Piece]:
         match element:
             case Text(text=text, order=order):
-                return [Piece(order, constant=text, sure=True)] if text else []
+                return [Piece(order, constant=text, sure=not is_blank(element))] if text else []
             case Code():
                 return self._code(element)
             case Word(name=name):
@@ -190,13 +194,13 @@ class _Writer:
             self.out.put(f'{name} = ""')
             self.out.put(f"if modes[{symbol.group}] != {symbol.number}:")
             self.out.put(f"    {changes}")
-            self.out.put(f"    {name} = {self._style.separator + symbol.text!r}")
-            return [Piece(symbol.order, variable=name, is_word=True)] if symbol.text else []
+            self.out.put(f"    {name} = {self._style.before(symbol) + symbol.text!r}")
+            return [Piece(symbol.order, variable=name, is_word=symbol.separated)] if symbol.text else []
         if symbol.group >= 0:
             self.out.put(changes)
         if element.prefix == "*" or not symbol.text:
             return []
-        return [Piece(symbol.order, constant=symbol.text, is_word=True, sure=True)]
+        return [Piece(symbol.order, constant=symbol.text, is_word=symbol.separated, sure=True)]
 
     def _word(self, element: Word, name: str) -> list[Piece]:
         symbols = self._symbols
@@ -221,7 +225,7 @@ class _Writer:
     def _variable(self, variable: VariableSymbol) -> Piece:
         name = self._temporary()
         memory = variable.memory
-        separator = self._style.separator
+        separator = self._style.before(variable)
         self.out.put(f"value = {self._symbols.use(variable.key)}")
         steps = ("if value - value: raise OverflowError", *variable.format.steps("value", name, separator))
         if variable.modal:
@@ -235,7 +239,7 @@ class _Writer:
             )
         for step in steps:
             self.out.put(f"    {step}" if variable.modal else step)
-        return Piece(variable.order, variable=name, is_word=True, sure=not variable.modal)
+        return Piece(variable.order, variable=name, is_word=variable.separated, sure=not variable.modal)
 
     def _assign(self, element: Assignment) -> None:
         name, symbols = element.name, self._symbols
@@ -384,23 +388,29 @@ class _SteadyWriter(_Writer):
 
     def _line(self, line: Line) -> None:
         self._temporaries = 0
-        self.out.put("pieces = []")
-        for element in without_margins(line.elements):
+        self.out.put("pieces, solid = [], False")
+        for element in line.elements:
             self.out.place = (line.number, element.at)
             self._steady(element)
+        if any(is_blank(element) for element in line.elements):
+            self.out.put(
+                "if not solid: return None"
+            )  # whether the blanks are written hangs on where the move goes
         self.out.put(f"if pieces: lines.append(({self._is_numbered(line)}, pieces))")
 
     def _steady(self, element: Element) -> None:
         match element:
             case Text(text=text) if text:
                 self.out.put(f"pieces.append(({text!r}, False))")
+                if not is_blank(element):
+                    self.out.put("solid = True")
             case Code():
                 symbol = self._symbols.codes[element.key]
                 if symbol.group >= 0:
                     self.out.put(f"if modes[{symbol.group}] != {symbol.number}: return None")
                 is_quiet = element.prefix == "*" or (element.prefix == "-" and symbol.group >= 0)
                 if symbol.text and not is_quiet:
-                    self.out.put(f"pieces.append(({symbol.text!r}, True))")
+                    self.out.put(f"pieces.append(({symbol.text!r}, {symbol.separated}))", "solid = True")
             case Word(name=name) if name in ENDS and name in self._symbols.variables:
                 self.out.put(f"pieces.append(({name!r},))")
             case Word(name=name) if variable := self._symbols.variables.get(name):
@@ -410,11 +420,11 @@ class _SteadyWriter(_Writer):
                 else:
                     self.out.put("if value - value: return None")
                     self.out.put(*variable.format.steps("value", "text_of_it"))
-                    self.out.put("pieces.append((text_of_it, True))")
+                    self.out.put(f"pieces.append((text_of_it, {variable.separated}))", "solid = True")
             case Word(name=name):
                 self._value_of(name)
                 piece = self._word(element, name)[0].variable
-                self.out.put(f"if {piece}: pieces.append(({piece}, False))")
+                self.out.put(f"if {piece}: pieces.append(({piece}, False)); solid = True")
             case Assignment() | Initialisation():
                 self.out.put("return None")
             case _:

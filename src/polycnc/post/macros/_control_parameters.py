@@ -78,6 +78,9 @@ class NcCode(StrictModel):
     order: Annotated[int, Field(ge=-999_999_999, le=999_999_999)] = Field(
         default=0, description="Place within the block if OUTPUTORDER is 1; small numbers come first."
     )
+    separator: bool = Field(
+        default=True, description="False: the `separator` of the parameters is not written before this one."
+    )
 
     _code = field_validator("code")(lambda text: text if text is None else _one_line(text))
 

@@ -53,6 +53,12 @@ def read_symbols(tables: ControlTables) -> Symbols:
                 "give only its order; the text of a function variable is in its format",
                 (*path, "code"),
             )
+        if not entry.separator and key not in symbols.codes and key not in symbols.variables:
+            raise ControlFlaw(
+                f"there is no separator before '{path[-1]}'",
+                "only codes and function variables have one; leave the key out",
+                (*path, "separator"),
+            )
         symbols.orders[key] = entry.order
     symbols.orders.setdefault(SEQUENCE_NUMBER, _DEFAULT_SEQUENCE_ORDER)
     _check_macros(tables.nc_macros, tables.parameters.strict)
@@ -81,7 +87,9 @@ def _add_codes(
         entry = entries[name][1] if name in entries else NcCode()
         text = key if entry.code is None else entry.code
         group = symbols.group(f"{section} {code.group}" if code.group else "")
-        symbols.codes[name] = CodeSymbol(name, text, entry.order, group, len(symbols.codes) + 1)
+        symbols.codes[name] = CodeSymbol(
+            name, text, entry.order, group, len(symbols.codes) + 1, entry.separator
+        )
 
 
 def _add_variables(
@@ -100,9 +108,16 @@ def _add_variables(
             raise ControlFlaw(str(flaw), 'write text with one number, like "X%.3f"', path) from None
         origin = origins.get(name, 0.0) if name in _ORIGIN_AXES else None
         initial = variable.initial if variable.initial is not None else origin or 0.0
-        order = entries[name][1].order if name in entries else 0
+        entry = entries[name][1] if name in entries else NcCode()
         symbols.variables[name] = VariableSymbol(
-            name, order, number, variable.modal, len(symbols.variables), origin, initial
+            name,
+            entry.order,
+            number,
+            variable.modal,
+            len(symbols.variables),
+            origin,
+            initial,
+            entry.separator,
         )
 
 

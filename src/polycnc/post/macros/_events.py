@@ -153,6 +153,9 @@ STATES: tuple[WordRow, ...] = (
     WordRow("SPINDLESTATE", "number", "3: the spindle turns clockwise; 4: counter-clockwise; 5: stopped", True, True),
     WordRow("COOLANTSTATE", "number", "8: flood; 7: mist; 88: through the tool; 9: off", True, True),
     WordRow("NEXTTOOL", "number", "tool of the next tool change, 0 after the last one", True, True),
+    WordRow("NEXTSPINDLE", "number", "revolutions per minute of the next SPINDL/ that turns the spindle; 0 if none "
+            "follows, or a surface speed", True, True),
+    WordRow("NEXTSPINDLESTATE", "number", "3 or 4: how it turns then, as SPINDLESTATE; 5 if none follows", True, True),
     WordRow("FIRSTMOTION", "number", "2: the first move or hole of the program, after a tool change or in another "
             "work offset; 1: the first of an operation otherwise; 0: any other", True, True),
     WordRow("WORKOFFSET", "number", "number of the work offset, 1 if the tool path names none", True, True),

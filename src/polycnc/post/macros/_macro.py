@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from typing import TypeAlias
 
 from polycnc.language import Flaw
-from polycnc.post.macros._elements import Assignment, Element, Initialisation, Numbering, Text, read_elements
+from polycnc.post.macros._elements import Element, Text, read_elements
 from polycnc.post.macros._expression import Condition, read_condition
 
 NESTED_IFS = 10
@@ -70,18 +70,9 @@ def elements_of(statements: Iterable[Statement]) -> Iterable[Element]:
                 yield from elements_of(branch.body)
 
 
-def without_margins(elements: tuple[Element, ...]) -> tuple[Element, ...]:
-    """Return the elements of a line without blanks at its end and around what writes nothing: they make no block."""
-
-    def is_blank(element: Element) -> bool:
-        return isinstance(element, Text) and not element.quoted and not element.text.strip(" \t")
-
-    kept = elements
-    while kept and is_blank(kept[-1]):
-        kept = kept[:-1]
-    if all(is_blank(each) or isinstance(each, Assignment | Initialisation | Numbering) for each in kept):
-        return tuple(each for each in kept if not is_blank(each))
-    return kept
+def is_blank(element: Element) -> bool:
+    """Tell whether an element is blanks without quotes: written as they stand, but no block alone."""
+    return isinstance(element, Text) and not element.quoted and not element.text.strip(" \t")
 
 
 class _Reader:

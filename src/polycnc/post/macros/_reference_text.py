@@ -152,6 +152,17 @@ RULINGS = [
     ("Sequence number: options besides 2", "0: no block, 1: every block", "`sequence_place`"),
     ("`@0@` and `@1@` in one block", "no number", "fixed"),
     ("Lines without output, also of nothing but blanks", "no block, no number", "fixed"),
+    (
+        "Blanks without quotes (Manual 001, lines 20 and 22)",
+        "written as they stand, also at the end of a line, after "
+        "texts, codes and numbers alike; alone they make no block",
+        "fixed",
+    ),
+    (
+        "`separator`: which elements",
+        "codes and function variables, but those with `separator = false`; no texts",
+        "`[nc_code]`",
+    ),
     ("DMS, ADMS: the packed form", "D.MMSS, with decimals of seconds after", "fixed"),
     ("TAN, ASIN, ACOS, ATAN", "in radians", "fixed"),
     ("`&&` and `||`", "`&&` binds closer; what is decided is not looked at further", "fixed"),

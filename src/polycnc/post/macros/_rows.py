@@ -74,7 +74,7 @@ class Rows:
             for part in parts:
                 if len(part) == 1:
                     used[part[0]] = variables[part[0]]
-                    pieces += (1 + _AXES.index(part[0]), 0, 0, 1)
+                    pieces += (1 + _AXES.index(part[0]), 0, 0, int(used[part[0]].separated))
                 else:
                     pieces += (0, *place(part[0]), int(part[1]))
         axes = np.zeros((3, _AXIS), np.int64)

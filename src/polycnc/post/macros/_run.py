@@ -143,7 +143,7 @@ class MacroRun:
                 if variable.modal:
                     value = float(ends[done - 1, ENDS.index(name)])
                     self._last[variable.memory] = value
-                    self._texts[variable.memory] = self._style.separator + variable.format.text(value)
+                    self._texts[variable.memory] = self._style.before(variable) + variable.format.text(value)
         return text, blocks, done
 
     def keep(self, words: Mapping[str, Value]) -> None:

@@ -37,6 +37,7 @@ class CodeSymbol:
     order: int
     group: int
     number: int
+    separated: bool = True
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,6 +51,7 @@ class VariableSymbol:
     memory: int
     origin: float | None
     initial: float
+    separated: bool = True
 
 
 @dataclass(slots=True)

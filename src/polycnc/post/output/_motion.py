@@ -14,7 +14,7 @@ from polycnc.post.macros._compile import START_WORDS
 from polycnc.post.output._arc_center import written_center
 from polycnc.post.output._kinematics import Angles, Kinematics
 from polycnc.post.output._output import Output
-from polycnc.post.output._rotary import table_angles
+from polycnc.post.output._rotary import table_angles, tilt_hint
 from polycnc.post.tool_path._arcs import Arc, cuts
 from polycnc.post.tool_path._course import Straight, Turn
 from polycnc.post.tool_path._cycles import Step
@@ -489,7 +489,7 @@ class Motion:
                 raise self._output.fail(
                     line,
                     "the tool is tilted, and the control file has no rotary axes",
-                    "Set 'rotary' in its parameters, or let the CAM system keep the tool axis 0, 0, 1.",
+                    tilt_hint(axis),
                 )
             return
         self._rotary = {"TOOLI": axis[0], "TOOLJ": axis[1], "TOOLK": axis[2]}

@@ -7,12 +7,13 @@ gives to macros is documented in `_events`. Moves and holes have files of their 
 from __future__ import annotations
 
 from array import array
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Any
 
 from polycnc.post.macros._control_file import ControlFile
 from polycnc.post.macros._events import MOST_NUMBERS, word_macros
+from polycnc.post.output._coming import SPINDLE_STATES, Coming, turned
 from polycnc.post.output._drilling import Drilling
 from polycnc.post.output._idle_macros import idle_macros
 from polycnc.post.output._motion import Motion
@@ -103,8 +104,7 @@ def post_program(
         ProgramError: the tool path or the control file asks for what cannot be posted.
     """
     output = Output(control, tool_path, out)
-    tools = _tool_numbers(tool_path) if control.names("NEXTTOOL") else ()
-    driver = _Driver(output, tools)
+    driver = _Driver(output, Coming.of(tool_path, control))
     handlers = driver.handlers()
     records = 0
     has_head = driver.motion.has_head
@@ -153,27 +153,16 @@ def post_program(
     )
 
 
-_SPINDLE_STATES = {"cw": 3.0, "ccw": 4.0, "off": 5.0}
 _COOLANT_STATES = {"mist": 7.0, "flood": 8.0, "through": 88.0, "off": 9.0}
-
-
-def _tool_numbers(tool_path: ToolPath) -> list[int]:
-    """Return the tools of all tool changes: NEXTTOOL must be known before its change is read."""
-    numbers = []
-    for record in tool_path:
-        if record.__class__ is End:
-            break
-        if isinstance(record, Tool):
-            numbers.append(record.number)
-    return numbers
 
 
 class _Driver:
     """One program: the frame of program, operations and tools around its moves."""
 
-    def __init__(self, output: Output, tool_numbers: Sequence[int]) -> None:
+    def __init__(self, output: Output, coming: Coming) -> None:
         self.output = output
-        self._tool_numbers = tool_numbers
+        self._coming = coming
+        self._spindles = 0
         self.motion = Motion(output)
         self.drilling = Drilling(output, self.motion)
         self.course = Course()
@@ -248,13 +237,12 @@ class _Driver:
                 "UNITS": units,
             }
             self.output.keep(SPINDLESTATE=5.0, COOLANTSTATE=9.0, WORKOFFSET=float(self.course.work_offset))
-            self._keep_next_tool()
+            self._keep_coming()
             self.motion.first(2.0)
             self.output.frame("PROGRAM_START", words)
 
-    def _keep_next_tool(self) -> None:
-        numbers = self._tool_numbers
-        self.output.keep(NEXTTOOL=float(numbers[self.tools]) if self.tools < len(numbers) else 0.0)
+    def _keep_coming(self) -> None:
+        self.output.keep(**self._coming.words(self.tools, self._spindles))
 
     def _begin_path(self) -> None:
         self._begin()
@@ -361,7 +349,7 @@ class _Driver:
         # A length that was said of an earlier tool is not that of this one.
         self.motion.tool_length_mm = self._shape.length if self._length_said else None
         self._length_said = False
-        self._keep_next_tool()
+        self._keep_coming()
         self.motion.first(2.0)
         number = float(record.number)
         scale = self.output.scale
@@ -387,20 +375,18 @@ class _Driver:
         self.drilling.close()
         if record.sense == "off":
             self._spindle_words = None
-            self.output.keep(SPINDLESTATE=_SPINDLE_STATES["off"])
+            self.output.keep(SPINDLESTATE=SPINDLE_STATES["off"])
             self.output.state("SPINDLE_OFF", record.line)
             return
-        before = self._turning
-        sense = record.sense if record.sense != "on" or before is None else before.sense
-        speed = record.speed
-        surface = record.surface
+        self._spindles += 1
+        self._keep_coming()
+        self._turning = turned(self._turning, record)
+        speed, surface = self._turning.speed, self._turning.surface
         if speed is None:
-            if before is None or before.speed is None:
-                raise self.output.fail(
-                    record.line, "the spindle turns before its speed is known", "Give a speed."
-                )
-            speed, surface = before.speed, before.surface
-        macro = "SPINDLE_CCW" if sense == "ccw" else "SPINDLE_CW"
+            raise self.output.fail(
+                record.line, "the spindle turns before its speed is known", "Give a speed."
+            )
+        macro = "SPINDLE_CCW" if self._turning.sense == "ccw" else "SPINDLE_CW"
         control = self.output.control
         if surface and control.has(macro) and not control.uses(macro, "SPINDLEMODE"):
             raise self.output.fail(
@@ -415,7 +401,6 @@ class _Driver:
                 "Ask for MAXRPM in the macro if the control has a clamp (G50 S, G92 S), or let the CAM system write "
                 "RPM.",
             )
-        self._turning = Spindle(record.line, "cw" if sense == "on" else sense, speed, surface)
         self.drilling.rpm = 0.0 if surface else speed
         self.motion.surface_speed = surface
         self.drilling.spindle_sense = self._turning.sense
@@ -425,7 +410,7 @@ class _Driver:
         }
         if not self.output.parameters.strict:
             words["MAXRPM"] = record.max_rpm
-        self.output.keep(SPINDLESTATE=_SPINDLE_STATES[self._turning.sense])
+        self.output.keep(SPINDLESTATE=SPINDLE_STATES[self._turning.sense])
         if surface and not record.max_rpm and self.output.control.uses(macro, "MAXRPM"):
             self.output.remark(
                 record.line,

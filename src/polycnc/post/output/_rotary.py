@@ -9,9 +9,10 @@ from __future__ import annotations
 import math
 from typing import Literal
 
-from polycnc.post.tool_path._records import Vector
+from polycnc.post.tool_path._records import UPRIGHT, Vector
 
 _UPRIGHT = 1e-9
+_OVERHEAD = 1.999
 
 
 def table_angles(
@@ -47,3 +48,16 @@ def axis_of(table: Literal["ac_table", "bc_table"], tilt: float, turn: float) ->
 def _near(angle: float, turn: float) -> float:
     """Return the angle, whole turns away, that lies next to `turn`."""
     return angle - 360.0 * round((angle - turn) / 360.0)
+
+
+def tilt_hint(axis: Vector) -> str:
+    """Return what to do about a tilted tool where the control file has no rotary axes."""
+    if math.dist(axis, UPRIGHT) > _OVERHEAD:
+        return (
+            "The axis goes from the tip to the spindle, and points into the table here: turn the coordinate system in "
+            "the CAM system, and keep the tool axis 0, 0, 1."
+        )
+    return (
+        "Take a control file with rotary axes (five_axis, as in fanuc-5axis), or let the CAM system keep the tool axis "
+        "0, 0, 1."
+    )

@@ -86,8 +86,15 @@ LEFT_OUT_MOTION = frozenset(
 
 _OFFSETS = "Write a length offset with the tool, like LOADTL/3,ADJUST,13, and a work offset as CUTCOM/ADJUST,2 (G55)."
 _PASSES = "Let the CAM system write each pass as points (GOTO, RAPID), not a cycle of the control."
+_TURNED = (
+    "Let the CAM system write points with the tool axis on the part (MULTAX, GOTO/x,y,z,i,j,k), and take a control "
+    "file with rotary or five_axis: it turns the table."
+)
 
 HINTS = {
+    "ROTABL": _TURNED,
+    "ROTHED": _TURNED,
+    "ROTATE": _TURNED,
     "NURBS": "In NX set 'Motion Output' of the operation to 'Line' or to 'Circular'.",
     "SPLINE": "Let the CAM system write points (GOTO) and arcs (CIRCLE, MOVARC) instead.",
     "SAFPOS": "Write the way to the safe position as RAPID and GOTO.",
