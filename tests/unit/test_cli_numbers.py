@@ -139,3 +139,10 @@ def test_what_bounds_let_in_is_carried_out_or_refused(
         done = CliRunner().invoke(app, [*number.command, f"{number.option}={text}", *more, *both])
         assert done.exit_code in (0, 1, 2), (text, done.output, done.exception)
         assert "internal error" not in done.output, (text, done.output)
+
+
+@pytest.mark.parametrize("path", [path for path, _ in _commands(typer.main.get_command(app))], ids=" ".join)
+def test_help_speaks_of_no_types(path: tuple[str, ...]) -> None:
+    shown = CliRunner().invoke(app, [*path, "--help"]).output
+    assert shown.startswith((f"Usage: polycnc {' '.join(path)} [OPTIONS]", "Usage: root"))
+    assert not re.search(r"[<{][a-z]|list\[", shown), shown

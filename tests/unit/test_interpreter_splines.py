@@ -162,7 +162,8 @@ def test_dialects_without_splines_refuse_them(dialect: str) -> None:
 
 def test_a_frame_turns_the_control_points_too() -> None:
     linuxcnc = load_dialect("linuxcnc")
-    dialect = Dialect.model_validate({**dict(linuxcnc), "g": {**linuxcnc.g, "68": "rotation"}})
+    fields = {name: getattr(linuxcnc, name) for name in Dialect.model_fields}
+    dialect = Dialect.model_validate({**fields, "g": {**linuxcnc.g, "68": "rotation"}})
     turned = prepared("F700 G68 X0 Y0 R90\n" + SERIES, dialect=dialect)
     assert off(track(turned), *([(-y, x) for x, y in control] for control in CONTROL)) < 1e-7
 

@@ -1,4 +1,4 @@
-"""Commands that say in words what is wrong with an option, and not in those of the library that checks it."""
+"""Commands whose help and refusals are in words, and not in those of the library that checks the options."""
 
 from __future__ import annotations
 
@@ -6,14 +6,54 @@ from collections.abc import Callable
 from typing import Any
 
 import typer
-from typer.core import TyperCommand
+from typer.core import TyperArgument, TyperCommand, TyperOption
 
 _NUMBER = ("float_parsing", "int_parsing", "int_parsing_size", "int_from_float", "finite_number")
 _BOUNDS = ("greater_than", "greater_than_equal", "less_than", "less_than_equal")
 
 
+_WORDS = {
+    "<int range>": "N",
+    "<int>": "N",
+    "<float range>": "X",
+    "<float>": "X",
+    "<path>": "FILE",
+    "<str>": "NAME",
+}
+
+
+class _Argument(TyperArgument):
+    """An argument that is shown by its name alone."""
+
+    def get_usage_pieces(self, ctx: Any) -> list[str]:
+        """Return the argument as a line of usage shows it."""
+        name = self.display_name_raw.strip("[]")
+        return [(name if self.required else f"[{name}]") + ("..." if self.nargs != 1 else "")]
+
+    def display_type_rich(self, ctx: Any) -> str | None:
+        """Return nothing: the help says what it is."""
+        return None
+
+
+class _Option(TyperOption):
+    """An option whose value has a word."""
+
+    def display_type(self, ctx: Any) -> str:
+        """Return what stands for the value."""
+        shown = super().display_type(ctx)
+        return _WORDS.get(shown, shown)
+
+
 class Command(TyperCommand):
     """A command whose refusals of options are sentences."""
+
+    def __init__(self, *args: Any, **kwargs: Any) -> None:
+        super().__init__(*args, **kwargs)
+        for each in self.params:
+            if isinstance(each, TyperArgument):
+                each.__class__ = _Argument
+            elif isinstance(each, TyperOption):
+                each.__class__ = _Option
 
     def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
         """Take the words of the command line.
