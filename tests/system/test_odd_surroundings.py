@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import signal
 import subprocess
+import sys
 from contextlib import closing
 from pathlib import Path
 
@@ -145,6 +147,34 @@ def test_a_link_to_itself_is_no_file_for_a_program(tmp_path: Path) -> None:
 def test_a_cache_folder_that_cannot_be_is_no_error(folder: Path) -> None:
     done = polycnc("run", "a.nc", cwd=folder, POLYCNC_CACHE_DIR=f"{folder}/{5000 * 'y'}")
     assert "Traceback" not in done.stderr
+
+
+INTERRUPTED = """
+import os, signal, sys
+
+class Interrupts:
+    def find_spec(self, name, path=None, target=None):
+        if name == "polycnc.cli._app":
+            os.kill(os.getpid(), signal.SIGNAL)
+
+sys.meta_path.insert(0, Interrupts())
+from polycnc.cli import main
+main()
+"""
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="no signals to send")
+@pytest.mark.parametrize("name", ["SIGINT", "SIGTERM"])
+def test_a_signal_during_imports_shows_no_traceback(name: str) -> None:
+    done = subprocess.run(
+        [sys.executable, "-c", INTERRUPTED.replace("SIGNAL", name)],
+        env=environment(),
+        capture_output=True,
+        text=True,
+        timeout=60,
+        check=False,
+    )
+    assert (done.returncode, done.stderr) == (-int(signal.Signals[name]), "")
 
 
 def test_a_batch_has_no_more_processes_than_runs(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
