@@ -21,7 +21,7 @@ MOVES = "G91 G1 X1.25 F2600\nY1.75\nG4 P30\nM99\n"
 
 
 def _program(rng: random.Random) -> str:
-    """Return a program that probes, taps, threads, feeds by revolutions, stops, counts, waits and calls."""
+    """Return a program that probes, taps, feeds by revolutions, stops, counts, waits and calls."""
     lines: list[str] = []
     for _ in range(rng.randint(3, 9)):
         lines += rng.choice(
@@ -31,7 +31,6 @@ def _program(rng: random.Random) -> str:
                 ["M3 S900", "G95", f"G1 X{rng.uniform(-9, 20):.2f} F0.35", "G94", "F900"],
                 ["M3 S900", f"G84 X{rng.uniform(0, 9):.2f} Z-4.5 R-1. F{rng.randint(900, 1300)}", "G80"],
                 ["M29 S600", "G84 Z-4.25 R-1. F600", "G80"],
-                ["S500 M3", "G33 Z-3.5 F1.25", "G0 Z0"],
                 [f"G4 P{rng.randint(5, 90)}"],
                 ["M8"],
                 ["M0"],

@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+import signal
 import subprocess
+import sys
+from contextlib import closing
 from pathlib import Path
 
 import pytest
 
+from polycnc.controllers.bosch import Pnc
 from polycnc.errors import UsageError
 from polycnc.runner import batches
 from support.command import COMMAND, environment, polycnc
@@ -83,6 +87,94 @@ def test_standard_input_may_be_closed(folder: Path) -> None:
     )
     assert done.returncode == 2, done.stderr
     assert "standard input is closed" in done.stderr
+
+
+def test_a_full_disk_is_told_with_what_does_not_fit(folder: Path) -> None:
+    if not Path("/dev/full").exists():
+        pytest.skip("needs a device that is always full")
+    for words in (("run", "a.nc"), ("serve", "--plain", "mill3", "--doors", "http=0")):
+        with open("/dev/full", "w") as full:
+            done = subprocess.run(
+                [*COMMAND, *words],
+                cwd=folder,
+                env=environment(),
+                stdout=full,
+                stderr=subprocess.PIPE,
+                text=True,
+                timeout=60,
+                check=False,
+            )
+        assert (done.returncode, done.stderr) == (1, "error: the output: No space left on device\n"), words
+
+
+OWN_FILES = ("wmhperm.dat", "anwperm.dat", "usrfep/anwperm.dat", "macoda.dat")
+
+
+@pytest.mark.parametrize("to", ["itself", "/dev/null", "a folder"])
+def test_a_link_that_leads_nowhere_in_a_root_is_a_sentence(to: str, tmp_path: Path) -> None:
+    (tmp_path / "a folder").mkdir()
+    for name in OWN_FILES:
+        root = tmp_path / name.replace("/", "_")
+        (root / name).parent.mkdir(parents=True)
+        (root / name).symlink_to((root / name).name if to == "itself" else tmp_path / to)
+        with pytest.raises(UsageError) as told:
+            Pnc(root)
+        assert str(told.value).startswith(f"{name}: ")
+        assert "a link" in str(told.value)
+
+
+def test_a_link_to_itself_is_no_file_for_a_program(tmp_path: Path) -> None:
+    (tmp_path / "loop").symlink_to("loop")
+    for statement in (
+        'OPENR(1,"loop")',
+        'OPENW(1,"loop")',
+        'ERASE("loop")',
+        'FILEACCESS("loop")',
+        "CALL loop",
+    ):
+        line = statement if statement.startswith(("OPEN", "CALL")) else f"A%={statement}"
+        (tmp_path / "main.npg").write_text(f"10 {line}\nM30\n")
+        with closing(Pnc(tmp_path)) as made:
+            made.select_program("main.npg")
+            made.cycle_start()
+            made.advance(3)
+            (alarm,) = made.control.alarms.active
+            assert alarm.name == "program"
+            assert "loop" in alarm.text or "INVALID FILE NAME" in alarm.text
+    assert (tmp_path / "loop").is_symlink()
+
+
+def test_a_cache_folder_that_cannot_be_is_no_error(folder: Path) -> None:
+    done = polycnc("run", "a.nc", cwd=folder, POLYCNC_CACHE_DIR=f"{folder}/{5000 * 'y'}")
+    assert "Traceback" not in done.stderr
+
+
+INTERRUPTED = """
+import os, signal, sys
+
+class Interrupts:
+    def find_spec(self, name, path=None, target=None):
+        if name == "polycnc.cli._app":
+            os.kill(os.getpid(), signal.SIGNAL)
+
+sys.meta_path.insert(0, Interrupts())
+from polycnc.cli import main
+main()
+"""
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="no signals to send")
+@pytest.mark.parametrize("name", ["SIGINT", "SIGTERM"])
+def test_a_signal_during_imports_shows_no_traceback(name: str) -> None:
+    done = subprocess.run(
+        [sys.executable, "-c", INTERRUPTED.replace("SIGNAL", name)],
+        env=environment(),
+        capture_output=True,
+        text=True,
+        timeout=60,
+        check=False,
+    )
+    assert (done.returncode, done.stderr) == (-int(signal.Signals[name]), "")
 
 
 def test_a_batch_has_no_more_processes_than_runs(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -1,5 +1,5 @@
 """Run the command as ``python -m polycnc.cli``."""
 
-from polycnc.cli._app import main
+from polycnc.cli import main
 
 main()

@@ -20,7 +20,7 @@ from importlib.metadata import PackageNotFoundError, version
 from typing import NoReturn, ParamSpec
 
 from polycnc import __version__
-from polycnc.cli._output import bold_red, say_problem
+from polycnc.cli._output import bold_red, flush, say_problem
 from polycnc.errors import PolycncError, UsageError
 
 P = ParamSpec("P")
@@ -41,7 +41,7 @@ def guarded(command: Callable[P, None]) -> Callable[P, None]:
         try:
             _check_numbers(kwargs)
             command(*args, **kwargs)
-            sys.stdout.flush()
+            flush()
         except UsageError as error:
             _end(str(error), USAGE)
         except PolycncError as error:

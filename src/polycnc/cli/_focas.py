@@ -7,6 +7,8 @@ from typing import Annotated
 
 import typer
 
+from polycnc.cli._output import echo
+
 focas_app = typer.Typer(
     help="Tools around FOCAS, the Ethernet protocol of FANUC controls.",
     no_args_is_help=True,
@@ -32,4 +34,4 @@ def dissect_command(
             f"{file}: {error.strerror or error}", hint="Give a file of captured bytes."
         ) from None
     for line in explain_capture(data, str(file), port):
-        typer.echo(line)
+        echo(line)

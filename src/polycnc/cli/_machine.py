@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from polycnc.cli._output import bold, columns, print_json, say
+from polycnc.cli._output import bold, columns, echo, print_json, say
 
 
 def machine_command(
@@ -51,7 +51,7 @@ def machine_command(
     if as_json and as_toml:
         raise UsageError("--json and --toml exclude each other", hint="Give one of them.")
     if as_toml:
-        typer.echo(machines.preset_text(machine or machines.DEFAULT_MACHINE), nl=False)
+        echo(machines.preset_text(machine or machines.DEFAULT_MACHINE), nl=False)
         return
     config = machines.load_machine(machine)
     if as_json:
@@ -76,7 +76,7 @@ def _print_from(source: Path, output: Path | None) -> None:
         check_output(output, (".toml",), "the machine file")
     text = machine_from(source)
     if output is None:
-        typer.echo(text, nl=False)
+        echo(text, nl=False)
         return
     with complete_or_absent(output) as partial:
         partial.write_text(text, encoding="utf-8")

@@ -7,6 +7,8 @@ from typing import Annotated
 
 import typer
 
+from polycnc.cli._output import echo
+
 mtconnect_app = typer.Typer(
     help="Tools around MTConnect, which collectors read machines by.",
     no_args_is_help=True,
@@ -45,7 +47,7 @@ def devices_command(
     kinds = {"fanuc": "" if fanuc else None, "plain": plain}
     document = describe_devices(file, kinds, name=name, axes=axes, version=mtconnect_version)
     if path is None:
-        typer.echo(document.decode(), nl=False)
+        echo(document.decode(), nl=False)
     else:
         with complete_or_absent(path) as partial:
             partial.write_bytes(document)

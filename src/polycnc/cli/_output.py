@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import json
 import logging
 import os
@@ -20,14 +21,40 @@ _BAR_AFTER_S = 2.0
 _BAR_STEP_S = 0.1
 
 
+_FULL = (errno.ENOSPC, errno.EFBIG, errno.EDQUOT if hasattr(errno, "EDQUOT") else errno.ENOSPC)
+
+
+@contextmanager
+def named_output() -> Iterator[None]:
+    """Let an error of a full disk name the output, which has no file's name."""
+    try:
+        yield
+    except OSError as error:
+        if error.errno in _FULL and error.filename is None:
+            error.filename = "the output"
+        raise
+
+
+def echo(text: str, *, nl: bool = True, err: bool = False) -> None:
+    """Print a text as it is."""
+    with named_output():
+        typer.echo(text, nl=nl, err=err)
+
+
+def flush() -> None:
+    """Write what was printed."""
+    with named_output():
+        sys.stdout.flush()
+
+
 def say(text: str = "", *, lead: str = "") -> None:
     """Print a line for people: `lead` as it is, then `text`."""
-    typer.echo(lead + _printable(text))
+    echo(lead + _printable(text))
 
 
 def say_error(text: str, *, lead: str = "") -> None:
     """Print an error or a remark to standard error."""
-    typer.echo(lead + _printable(text), err=True)
+    echo(lead + _printable(text), err=True)
 
 
 def bold(text: str) -> str:
@@ -50,7 +77,7 @@ def say_problem(text: str, *, lead: str = "", error: bool = False) -> None:
     first, *rest = _printable(text).split("\n")
     lines = [lead + bold(first)]
     lines += [_styled(line, bold=True, fg="red") if line.strip() == "^" else line for line in rest]
-    typer.echo("\n".join(lines), err=error)
+    echo("\n".join(lines), err=error)
 
 
 def _printable(text: str) -> str:
@@ -75,7 +102,7 @@ def columns(rows: Iterable[Sequence[str]], right: Sequence[int] = ()) -> list[st
 
 def print_json(data: Any) -> None:
     """Print one JSON object; numbers that JSON does not have become null."""
-    typer.echo(json.dumps(_plain(data), indent=2, allow_nan=False))
+    echo(json.dumps(_plain(data), indent=2, allow_nan=False))
 
 
 def _plain(data: Any) -> Any:

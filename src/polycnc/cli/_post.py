@@ -6,10 +6,8 @@ import sys
 from collections.abc import Callable
 from typing import TYPE_CHECKING, cast
 
-import typer
-
 from polycnc.cli import _options as options
-from polycnc.cli._output import bold, bold_red, print_json, progress_bar, say, say_error
+from polycnc.cli._output import bold, bold_red, echo, print_json, progress_bar, say, say_error
 from polycnc.errors import UsageError
 
 if TYPE_CHECKING:
@@ -36,7 +34,7 @@ def post_command(
             "no control file", hint=f"Name one with --control: {', '.join(post.CONTROLS)}, or a file."
         )
     if show_control:
-        typer.echo(post.shipped_text(control), nl=False)
+        echo(post.shipped_text(control), nl=False)
         return
     if tool_path is None:
         raise UsageError("no tool path", hint="Name the file of a tool path.")
@@ -71,7 +69,7 @@ def _report(result: PostResult) -> None:
     summary = result.summary
     tell: Callable[..., None] = say
     if result.text is not None:
-        typer.echo(result.text, nl=False)
+        echo(result.text, nl=False)
         tell = say_error
     tell(f"tool path  {result.tool_path}")
     tell(f"           {counted(summary.records, 'record')}, {counted(summary.tools, 'tool')}, "

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, NoReturn
 
 from polycnc.cli import _serve_options as _options
 from polycnc.cli._errors import INTERRUPTED
-from polycnc.cli._output import say, say_error
+from polycnc.cli._output import flush, say, say_error
 
 if TYPE_CHECKING:
     from polycnc.servers.setup import Plan
@@ -206,7 +206,7 @@ def _leave_after(number: int) -> NoReturn:
 
 def _say_line(line: str) -> None:
     say(line)
-    sys.stdout.flush()
+    flush()
 
 
 def _status_of(number: int) -> int:

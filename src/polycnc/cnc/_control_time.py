@@ -157,9 +157,7 @@ class ControlTime:
         counts = self._of.data.count_parts and channel.path == 0 and not channel.is_mdi
         if channel.run_state is RunState.COMPLETED and counts:
             self._of.parts.count()
-        if (
-            run is None or channel.broken or run.alarm is not None
-        ):  # it did not get to the blocks prepared ahead
+        if run is None or channel.broken or run.alarm is not None:  # it got to no block prepared ahead
             return
         if run.state is RunState.ALARM and (error := run.error) is not None:
             name, axis = self._of.alarms.of_program(error)

@@ -54,9 +54,13 @@ class KeptVariables:
 
 
 def first_of(directory: Directory, name: str) -> tuple[str, str] | None:
-    """Return path and text of a file of the control, the first of root, user FEPROM and FEPROM; None without one."""
+    """Return path and text of a file of the control, the first of root, user FEPROM and FEPROM; None without one.
+
+    Raises:
+        UsageError: It cannot be read.
+    """
     for path in (name, *(f"{folder}/{name}" for folder in FEPROMS)):
-        text = directory.text(path)
+        text = directory.own_text(path)
         if text is not None:
             return path, text
     return None

@@ -97,7 +97,7 @@ class BoschSystem:
         """What tells the files of the programs that run, of each channel."""
         self._noted: dict[int, tuple[Channel, int]] = {}
         self.kept = KeptVariables(self.directory)
-        text = self.directory.text(FILE)
+        text = self.directory.own_text(FILE)
         self._macoda = {number: macoda(config, self.axes, number, text) for number in self.axes.channels}
         errors = [*self.kept.errors, *next(iter(self._macoda.values()))[1]]
         self.errors_of_files = [each for each in errors if each.code != _MEMORY_FULL]

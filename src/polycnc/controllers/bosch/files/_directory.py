@@ -8,6 +8,7 @@ import stat
 from contextlib import suppress
 from pathlib import Path
 
+from polycnc.errors import UsageError
 from polycnc.nc.cpl import Fault
 
 LONGEST_NAME = 30
@@ -62,7 +63,7 @@ class Directory:
         """Return the text of a program, None if there is no such file.
 
         Raises:
-            Fault: The name leads out of the root.
+            Fault: The name leads out of the root, or the file cannot be read.
         """
         state: tuple[int, ...] = ()
         with suppress(OSError, ValueError):
@@ -81,9 +82,25 @@ class Directory:
         path = self.path(name)
         if not is_file(path):
             return None
-        text = self._read(path)
+        try:
+            text = self._read(path)
+        except OSError as error:
+            raise Fault("INVALID FILE NAME", f"'{name}' cannot be read: {error.strerror}") from None
         self._texts[name] = state, text
         return text
+
+    def own_text(self, name: str) -> str | None:
+        """Return the text of a file that the control reads when it is switched on, None if there is none.
+
+        Raises:
+            UsageError: It cannot be read, or lies out of the root.
+        """
+        try:
+            return self.text(name)
+        except Fault as fault:
+            raise UsageError(
+                f"{name}: {fault.hint}", hint="Put a readable file there, or take it out."
+            ) from None
 
     @staticmethod
     def _read(path: Path) -> str:
