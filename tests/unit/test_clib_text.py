@@ -18,6 +18,12 @@ COUNTS = {"fanuc": 96, "imc": 53, "apci": 197}
 FILES = ("fwlib32.h", "fwlib32.c", "fwlib32.def", "fwlib32_win32.def", "fwlib32.pas", "fwlib32.cs")
 KINDS = sorted(LIBRARIES)
 FEW = [each if each == "fanuc" else pytest.param(each, marks=pytest.mark.long) for each in KINDS]
+CONSTANT = {
+    "apci": 'txbf("axes.dat")',
+    "fanuc": 'cnc_allclibhndl3("127.0.0.1", 8193, 1, 0) + cnc_download(1, "M2;", 3)',
+    "imc": 'IMC_OpenUsePassword(0, 0, 0, "none")',
+}
+"""Calls with literals, which C++ takes for constant texts alone."""
 WINDOWS = {"win32": "i686-w64-mingw32-gcc", "win64": "x86_64-w64-mingw32-gcc"}
 
 
@@ -51,7 +57,8 @@ def test_the_header_compiles_without_a_warning(
     assert library is not None
     write_library(library, tmp_path)
     source = tmp_path / ("client.cpp" if "+" in language else "client.c")
-    source.write_text(f'#include "{library_of(kind).name}.h"\n')
+    calls = CONSTANT[kind]
+    source.write_text(f'#include "{library_of(kind).name}.h"\nint main(void) {{ return {calls}; }}\n')
     command = [
         compiler,
         f"-std={language}",

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from polycnc.controllers.library.clib import Call
 from polycnc.errors import UsageError
 from polycnc.machine import Device
 from polycnc.servers.calls._caller import Caller
@@ -43,25 +44,26 @@ def replay(path: Path, device: Device[Any], make: Callable[[], Caller]) -> Itera
         UsageError: The file cannot be read, or a line is none of a trace; what comes before it is carried out.
     """
     callers: dict[int, Caller] = {}
+    table: dict[str, Call] = {}
     for number, text in _lines(path):
         place = f"{path}:{number}"
         try:
             row = json.loads(text)
             time_s, client, name = float(row["time_s"]), int(row["client"]), str(row["call"])
             caller = callers.get(client) or callers.setdefault(client, make())
-            calls = {each.function.name: each for each in caller.library.calls}
-            if name not in calls:
+            table = table or {each.function.name: each for each in caller.library.calls}
+            if name not in table:
                 raise UsageError(
                     f"{place}: {caller.library.name} has no function '{name[:60]}'",
                     hint="Name the kind that the trace was made with.",
                 )
-            given = given_of(calls[name], row["in"], row.get("room", {}))
+            given = given_of(table[name], row["in"], row.get("room", {}))
             expected = row["code"], row["out"]
         except (AttributeError, KeyError, TypeError, ValueError, OverflowError) as error:
             raise UsageError(f"{place}: no line of a trace: {error}"[:300], hint=_HINT) from None
         _pass(device, time_s, place)
         try:
-            done = caller.carry_out_given(calls[name], given)
+            done = caller.carry_out_given(table[name], given)
         except CallError as error:
             raise UsageError(f"{place}: {error}", hint=_HINT) from None
         yield Replayed(number, name, expected, (done.code, outputs(given, done)))

@@ -6,7 +6,7 @@ import ctypes
 from collections.abc import Iterator
 from typing import Any
 
-from polycnc.controllers.library._functions import Function
+from polycnc.controllers.library._functions import Argument, Direction, Function
 from polycnc.controllers.library.clib._slots import CLibrary
 
 _BEGIN = """\
@@ -106,9 +106,15 @@ def declared(c: str, name: str) -> str:
 
 
 def prototype(library: CLibrary, function: Function, name: str = "") -> str:
-    """Return a function's head; what it only reads is not marked, as old programs do not."""
-    arguments = ", ".join(declared(each.c, each.name) for each in function.arguments) or "void"
+    """Return a function's head; a text that it only reads is constant, so that C++ may pass a literal."""
+    arguments = (
+        ", ".join(_constant(each) + declared(each.c, each.name) for each in function.arguments) or "void"
+    )
     return f"PC_API {c_type(function.result)} PC_CALL {name or function.name}({arguments})"
+
+
+def _constant(argument: Argument) -> str:
+    return "const " if argument.direction is Direction.IN and c_type(argument.c) == "char *" else ""
 
 
 def _prototypes(library: CLibrary) -> Iterator[str]:
