@@ -39,6 +39,7 @@ def initialise(name: str = "system.dat") -> tuple[int, int]:
 
 
 @pytest.mark.covers("apci.BootFile", "apci.InitMcuSystem3", "apci.mcuinit", "apci.ROSI")
+@pytest.mark.covers("apci.ifs.16.pfe", "apci.ifs.20.scpfe")
 def test_a_program_boots_a_board_and_initialises_the_system(tmp_path: Path) -> None:
     (tmp_path / "rwmos.elf").write_bytes(b"\x7fELF")
     (tmp_path / "system.dat").write_text("[[axis]]\njac = 321.0\n[[axis]]\n")
@@ -52,6 +53,8 @@ def test_a_program_boots_a_board_and_initialises_the_system(tmp_path: Path) -> N
     assert pcap.InitMcuSystem3(tsrp, rosi, 0, "system.dat") == (0, 4)
     assert ([record.an for record in tsrp], tsrp[0].jac) == (list(range(18)), 321.0)
     assert (rosi.number_axis, rosi.sysfile_loaded) == (2, 1)
+    pcap.rdifs(tsrp[0])
+    assert tsrp[0].ifs == 0x0011_0003  # switched on: both power failures are shown
     axes = pcap.AS.of(0)
     pcap.cl(axes)
     tsrp[0].tp = 1.0
@@ -63,6 +66,9 @@ def test_a_program_boots_a_board_and_initialises_the_system(tmp_path: Path) -> N
     assert pcap.BootFile("rwmos.elf", 0) == 0
     pcap.rdrp(tsrp[0])
     assert (tsrp[0].rp, pcap.rdaxstb(0, 13)) == (1.0, 0)  # not read: it must be initialised again
+    assert pcap.InitMcuSystem3(tsrp, rosi, 0, "system.dat") == (0, 4)
+    pcap.rdifs(tsrp[0])
+    assert tsrp[0].ifs == 0x0000_0003  # a second boot has lost them
 
 
 @pytest.mark.covers("apci.InitMcuSystem", "apci.InitMcuSystem2", "apci.InitMcuSystem3", "apci.txbf")
@@ -447,7 +453,9 @@ def test_a_wrong_number_of_arguments_of_any_function_is_reported_with_its_protot
     Pc()
     for name, function in LIBRARY.functions.items():
         call = getattr(pcap, name)
-        for given in ((0,) * (len(function.passed) + 1), *([()] if function.passed else [])):
+        parameters = inspect.signature(call).parameters.values()
+        needed = sum(each.default is inspect.Parameter.empty for each in parameters)
+        for given in ((0,) * count for count in (*range(needed), len(function.passed) + 1)):
             with pytest.raises(UsageError, match=name) as told:
                 call(*given)
             assert told.value.hint == function.prototype

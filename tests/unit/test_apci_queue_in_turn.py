@@ -183,7 +183,7 @@ def test_corners_keep_mdvel_in_its_unit_whatever_comes_behind_them(
     ("vl", "tvl", "limit", "end"),
     [(100.0, 150.0, 1000.0, 150.0), (100.0, -150.0, 120.0, -120.0), (50.0, 80.0, 60.0, 60.0)],
 )
-@pytest.mark.covers("apci.wrMaxVel")
+@pytest.mark.covers("apci.wrMaxVel", "apci.var.MaxVel")
 def test_maxvel_limits_target_velocities_of_either_sign_and_no_others(
     vl: float, tvl: float, limit: float, end: float
 ) -> None:
@@ -193,6 +193,9 @@ def test_maxvel_limits_target_velocities_of_either_sign_and_no_others(
     pcap.wrMaxVel(0, limit)
     pcap.smla(axes, line(0, 100.0, vl=vl, tvl=tvl))
     pcap.ssms(axes)
+    while pc.rp(0) < 50.0:
+        pc.board.advance(5)
+    assert pc.dv(0) == near(vl)  # a limit above it does not raise it
     pc.board.advance(3000)
     assert pc.dv(0) == near(end)
 
