@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import random
+import re
 from pathlib import Path
 
 import numpy as np
@@ -11,9 +12,21 @@ import pytest
 
 from polycnc.errors import ProgramError
 from polycnc.machine import MachineConfig, ToolConfig, load_machine
-from polycnc.post import ControlFile, Sweep, parse_control, parse_tool_path, shipped_text, sweep_tool_path
+from polycnc.nc import ProgramText
+from polycnc.post import (
+    BlockMap,
+    ControlFile,
+    Sweep,
+    parse_control,
+    parse_tool_path,
+    shipped_text,
+    sweep_tool_path,
+)
+from polycnc.post.output._program import post_program
 from polycnc.runner import PostResult, PostVerification, post_file, run
 from polycnc.runner._post_geometry import Moves
+from polycnc.runner._verify_post import verify_post
+from support.often import share
 from support.post_controls import control
 
 TRIANGLE = "FROM/0,0,0\nRAPID\nGOTO/0,0,5\nFEDRAT/3000\nGOTO/10,0,0\nGOTO/10,10,0\nGOTO/0,0,0\nFINI\n"
@@ -294,3 +307,45 @@ def test_without_a_tolerance_it_is_what_rounding_may_cost(
     proof = post_file(path, parse_control(shipped, "mine.toml"), verify=True).verification
     assert proof is not None
     assert proof.tolerance_mm == pytest.approx(tolerance_mm)
+
+
+@pytest.mark.parametrize(
+    ("decimals", "units", "feed", "turn"),
+    [(3, "mm", 30000, 0), (4, "mm", 700, 1), (4, "inch", 6000, 2), (2, "mm", 6000, 3)],
+)
+def test_each_wrong_digit_of_a_point_is_found_and_no_smaller_one(
+    decimals: int, units: str, feed: int, turn: int
+) -> None:
+    # Sharp corners everywhere, moves of a few units among them, an arc: each position is where something turns.
+    text = (
+        f"FROM/0,0,35\nRAPID\nGOTO/3.1415,-7.2718,5.1234\nFEDRAT/{feed}\nGOTO/3.1415,-7.2718,-1.4142\n"
+        "GOTO/13.6271,4.1873,-2.6457\nGOTO/13.5771,4.2573,-2.6957\nGOTO/-8.3166,9.9498,-2.6957\n"
+        "CIRCLE/-8.3166,3.9498,-2.6957,0,0,1,6\nGOTO/-14.3166,3.9498,-2.6957\nRAPID\n"
+        "GOTO/2.2360,1.7320,8.6602\nFINI\n"
+    )
+    shipped = shipped_text("din").replace("%.3f", f"%.{decimals}f")
+    used = parse_control(
+        shipped.replace("decimals = 3", f'decimals = {decimals}\nunits = "{units}"'), "mine.toml"
+    )
+    path, blocks, pieces = parse_tool_path(text), BlockMap(), list[str]()
+    post_program(path, used, pieces.append, block_map=blocks)
+    program = "".join(pieces)
+
+    def proof(changed: str) -> PostVerification:
+        parameters = used.parameters
+        written = ProgramText.from_text(changed, "part.nc")
+        return verify_post(
+            written, path, blocks, parameters.machine, parameters.dialect, parameters=parameters
+        )
+
+    right = proof(program)
+    assert right.ok
+    unit_mm = 10.0**-decimals * (25.4 if units == "inch" else 1.0)
+    wrong = math.ceil(2.0 * right.tolerance_mm / unit_mm)  # rounding has taken up to one tolerance
+    for place, found in enumerate(re.finditer(r"[XYZ](-?[0-9]+\.[0-9]+)", program)):
+        if place % 4 != turn and share(2) == 1:
+            continue
+        for units_off in (wrong, *((1,) if 3.0 * unit_mm < right.tolerance_mm else ())):
+            value = float(found[1]) + units_off * 10.0**-decimals * (1 if place % 2 else -1)
+            changed = f"{program[: found.start(1)]}{value:.{decimals}f}{program[found.end(1) :]}"
+            assert proof(changed).ok == (units_off == 1), (found[0], value)

@@ -33,6 +33,10 @@ def _sign(name: str, pattern: bytes) -> _Sign:
 
 _HEIDENHAIN = "Heidenhain conversational language"
 _SIEMENS = "Siemens language of Sinumerik controls"
+_HEIDENHAIN_ISO = "DIN/ISO language of Heidenhain controls"
+_OKUMA = "OSP language of Okuma controls"
+_FAGOR = "Fagor language"
+_PRINTER = "language of 3D printers"
 _UNREADABLE = (
     _sign(_HEIDENHAIN, _LINE + rb"(?:[0-9]+[ \t]+)?BEGIN[ \t]+PGM\b"),
     _sign(_HEIDENHAIN, _LINE + rb"[0-9]+[ \t]+(?:TOOL CALL|CYCL DEF|FN ?[0-9]+:|LBL[ \t])"),
@@ -41,7 +45,21 @@ _UNREADABLE = (
     _sign(_SIEMENS, _NUMBER + rb"(?:PROC[ \t]+[A-Z_]|TRANS[ \t]+[XYZ]|MSG[ \t]*\()"),
     _sign(_SIEMENS, _NUMBER + rb"(?:R[0-9]+[ \t]*=[ \t]*[-+0-9R(.]|(?:IF|WHILE)[ \t]+R[0-9]+|GOTO[BF][ \t])"),
     _sign(_SIEMENS, rb"%_N_[A-Z0-9_]+_[MS]PF\b"),
+    _sign(_HEIDENHAIN_ISO, _NUMBER + rb"%[A-Z0-9_]+[ \t]+G7[01][ \t]*\*"),
+    _sign(_OKUMA, _LINE + rb"\$[A-Z0-9_-]+\.(?:MIN|SSB|SUB)%"),
+    _sign(_OKUMA, _NUMBER + rb"(?:V[CS][0-9]+[ \t]*=|G15[ \t]+H[0-9]|CALL[ \t]+O[A-Z])"),
+    _sign(_FAGOR, _LINE + rb"%[A-Z0-9_ ]+,MX--?"),
+    _sign(_PRINTER, rb"(?<![A-Z])G[ \t]*92[ \t]+E[-.0-9]"),
+    _sign(_PRINTER, rb"(?<![A-Z])G[ \t]*0?1[ \t](?:[XYZF][-.0-9]+[ \t]+)+E[-.0-9]"),
+    _sign("language of ShopBot tools", _LINE + rb"(?:[JM][XYZABS2-5]|VS)[ \t]*,[ \t]*[-.0-9]"),
+    _sign("plotter language HPGL", rb"\A\n[ \t]*IN;"),
 )
+_BETWEEN_BRACKETS = (
+    _sign(
+        _FAGOR, _NUMBER + rb"\((?:IF[ \t]+P[0-9]+|GOTO[ \t]+N[0-9]+|P[0-9]+[ \t]*=[ \t]*P[0-9]+[ \t]*[-+*/F])"
+    ),
+)
+"""Signs of languages whose statements stand where other languages have comments."""
 _O_WORDS = b"SUB|ENDSUB|CALL|RETURN|IF|ELSEIF|ELSE|ENDIF|WHILE|ENDWHILE|DO|REPEAT|ENDREPEAT|BREAK|CONTINUE"
 _CPL_WORDS = b"IF|LET|FOR|REPEAT|WHILE|DIM|DEF|CASE|PRN#|DSP|CALL|GOTO|GOSUB|REM"
 _CPL_ASSIGNS = rb"[A-Z_][A-Z0-9_]*[%$?!#]?(?:\([^)\r\n]*\))?[ \t]*="
@@ -56,7 +74,7 @@ _SIGNS = (
     _sign("fanuc", _NUMBER + rb"(?:/[0-9]?[ \t]*)?(?:" + _MACRO + rb")"),
     _sign("fanuc", _LINE + rb"O[ \t]*[0-9]{1,8}(?=[ \t]*(?:[\r\n(;]|\Z))"),
 )
-_TURRET = re.compile(rb"(?<![A-Z])T[0-9]{4}(?![0-9])", re.IGNORECASE)
+_TURRET = re.compile(rb"(?<![A-Z])T[0-9]{3,4}(?![0-9])", re.IGNORECASE)
 _MILL = re.compile(
     rb"(?<![A-Z])(?:Y[ \t]*[-+.0-9#\[]|M[ \t]*0?6(?![0-9])|G[ \t]*4[34](?![0-9]))", re.IGNORECASE
 )
@@ -91,6 +109,10 @@ def choose_dialect(text: ProgramText, explicit: str | Path | Dialect | None = No
     default = load_dialect(DEFAULT_DIALECT)
     for sign in _UNREADABLE:
         if found := sign.pattern.search(words):
+            return ChosenDialect(default, problem=_unreadable(text, sign, found))
+    with_comments = b"\n" + text.content[:_LOOKED_AT]
+    for sign in _BETWEEN_BRACKETS:
+        if found := sign.pattern.search(with_comments):
             return ChosenDialect(default, problem=_unreadable(text, sign, found))
     for sign in _SIGNS:
         if found := sign.pattern.search(words):

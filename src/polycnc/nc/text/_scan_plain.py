@@ -37,6 +37,7 @@ _MESSAGE = re.compile(rf"{_B}MSG{_B},(?P<text>.*)", re.IGNORECASE | re.ASCII)
 _KNOWN = re.compile(rf"[A-Za-z0-9+\-./:%{re.escape(BLANK_BYTES.decode('ascii'))}]")
 
 _REMARK_HINT = "A block holds words like X12.5; remarks go into a comment."
+_SENDER_HINT = "It is a command that a sender gives the control, no block of a program: remove the line."
 
 
 @dataclass(frozen=True, slots=True)
@@ -272,7 +273,8 @@ class _LineReader:
         if char in "/:%":
             return self._error(f"'{char}' belongs at the beginning of a block", _REMARK_HINT)
         shown = char if char.isascii() and char.isprintable() else f"byte 0x{ord(char):02X}"
-        return self._error(f"'{shown}' is not allowed in a block", _REMARK_HINT)
+        hint = _SENDER_HINT if char in "$?" and self.line[: self.place].strip() == "" else _REMARK_HINT
+        return self._error(f"'{shown}' is not allowed in a block", hint)
 
     def _error(self, what: str, hint: str) -> ProgramError:
         return ProgramError(what, position=self.text.position(self.offset + self.place), hint=hint)
