@@ -610,3 +610,23 @@ def test_what_a_ring_axis_paces_does_not_notice_its_turns(source: str, speed: in
     assert card.read("startsyn", 2) == FLAG
     card.advance(22)
     assert (card.read("mcspos", 2), card.read("startsyn", 2)) == (1000, 0)
+
+
+@pytest.mark.covers(
+    "imc.param.engear", "imc.param.gearoutmod", "imc.param.gearoutvel", "imc.concept.gear_law"
+)
+@pytest.mark.parametrize(("mode", "after"), [(0, 3.0), (FLAG, -2.25)])
+def test_a_gear_that_is_left_on_its_ramp_keeps_its_speed_or_goes_to_gearoutvel(
+    mode: int, after: float
+) -> None:
+    card = ready_card()
+    set_now(card, ("mcstgvel", 10), ("mcsaccel", 10), ("mcsaccel", 0.5, 2), ("gearoutmod", mode, 2))
+    card.advance(3)
+    set_now(
+        card, ("gearsrc", address("mcsvel"), 2), ("master", 0, 2), ("gearratio", 1, 2), ("engear", FLAG, 2)
+    )
+    card.advance(6)
+    assert card.read("mcsvel", 2) == 3.0
+    set_now(card, ("gearoutvel", -2.25, 2), ("engear", 0, 2))
+    card.advance(20)
+    assert (card.read("mcsvel", 2), card.read("engear", 2)) == (after, 0)

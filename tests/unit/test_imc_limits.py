@@ -193,6 +193,9 @@ def test_each_bit_of_the_masks_is_for_its_own_error() -> None:
                 leave,
             )
             assert int(card.read("error", 1)) & 0xFFFF == bit
+            set_now(card, ("mcstgvel", 4 * way, 1))  # what the mask does not name keeps from nothing
+            card.advance(6)
+            assert card.read("curvel", 1) * way == (4 if after == 9 else 0), (number, stop, mode, leave)
 
 
 @pytest.mark.covers("imc.param.psoftlim", "imc.param.nsoftlim", "imc.param.aioctr", "imc.param.error")

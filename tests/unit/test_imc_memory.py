@@ -147,14 +147,7 @@ def test_ratios_have_exact_words() -> None:
     assert card.read_raw(address("gearoutvel"), 0, 2) == 100 * 65536
 
 
-@pytest.mark.covers(
-    *(
-        row
-        for row, name, *_ in _printed()
-        if PARAMETERS[name].scope == "G" and PARAMETERS[name].access == "rw"
-    )
-)
-@pytest.mark.covers("imc.param.gearoutvel")
+@pytest.mark.covers(*(row for row, _, at, _ in _printed() if at in CARD_ADDRESSES))
 def test_words_of_the_card_are_the_same_for_every_axis() -> None:
     card = Card()
     cells = [
