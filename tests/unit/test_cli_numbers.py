@@ -102,6 +102,15 @@ def test_every_number_is_bounded_and_refused_outside(
         assert "Traceback" not in done.output
 
 
+def test_help_names_what_is_given_and_no_types_of_the_code() -> None:
+    for path, command in _commands(typer.main.get_command(app)):
+        said = command.get_help(typer.Context(command, info_name=" ".join(path)))
+        assert not re.search(r"<|[{]|\[\[|Path|\brange\b|\bstr\b", said.replace("<=", "")), said
+        assert "<=" not in said
+        for each in command.params:
+            assert each.opts[-1] in said or (each.metavar or "").strip("[]") in said or each.hidden
+
+
 def test_what_is_no_choice_is_told_without_the_words_of_a_library(program: str) -> None:
     wrong = {
         "run --units in": "'--units': 'in' is not one of 'mm', 'inch'.",
