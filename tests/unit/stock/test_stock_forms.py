@@ -117,6 +117,7 @@ def test_wrong_forms_are_refused(text: str, wrong: str) -> None:
     ("content", "wrong"),
     [
         (b"", "no STL"),
+        (b"PK\x03\x04 or a text\n" * 9, "no STL"),
         (b"solid x\nvertex 1 2\n", "no STL|wrong numbers"),
         (b"solid x\nvertex 1 2 a\nvertex 1 2 3\nvertex 4 5 6\n", "no STL"),
         (b"solid x\nvertex 1 2 nan\nvertex 1 2 3\nvertex 4 5 6\n", "wrong numbers"),
@@ -165,6 +166,9 @@ def test_a_body_inside_out_is_refused(tmp_path: Path) -> None:
     surface = Stock(Box((0.0, 0.0, 0.0), (3.0, 4.0, 5.0)), 1.0).mesh()
     type(surface)(surface.vertices, surface.faces[:, ::-1]).write_stl(file)
     with pytest.raises(UsageError, match="inside out"):
+        Form(str(file)).body(circle(), TOOLS)
+    type(surface)(surface.vertices * (1.0, 1.0, 0.0), surface.faces).write_stl(file)
+    with pytest.raises(UsageError, match="no volume"):
         Form(str(file)).body(circle(), TOOLS)
 
 
