@@ -21,9 +21,11 @@ FACETS = 180
 def solid(tool: Tool) -> Any:
     """Return a tool as a convex body from its tip up to 40 mm."""
     profile = tool.cutting_profile()
-    radii = np.linspace(0.0, tool.radius_mm, 2 if tool.kind in (ToolKind.FLAT, ToolKind.DRILL) else 48)
-    # More rings where the outline is steep, and as much area as the circle has.
-    radii = tool.radius_mm * np.sin(0.5 * math.pi * radii / tool.radius_mm)
+    if tool.kind in (ToolKind.BALL, ToolKind.BULL):  # more rings where the outline is steep
+        radii = tool.radius_mm * np.sin(np.linspace(0.0, 0.5 * math.pi, 48))
+    else:
+        radii = np.array([0.0, 0.5 * tool.tip_mm, tool.radius_mm])
+    # As much area as the circle has.
     wider = math.sqrt(2.0 * math.pi / FACETS / math.sin(2.0 * math.pi / FACETS))
     angle = np.linspace(0.0, 2.0 * math.pi, FACETS, endpoint=False)
     rings = [(r * wider, profile.height(float(min(r, tool.radius_mm)))) for r in radii]
@@ -45,12 +47,15 @@ def exact_mm3(tool: Tool, places: list[np.ndarray[Any, np.dtype[np.float64]]]) -
 
 def random_tool(rng: np.random.Generator) -> Tool:
     diameter = float(rng.uniform(4.0, 12.0))
+    tip = diameter * float(rng.uniform(0.05, 0.5))
     return [
         Tool(ToolKind.FLAT, diameter),
         Tool(ToolKind.BALL, diameter),
         Tool(ToolKind.BULL, diameter, corner_mm=diameter * float(rng.uniform(0.1, 0.4))),
         Tool(ToolKind.DRILL, diameter, angle_deg=float(rng.uniform(90.0, 140.0))),
-    ][int(rng.integers(4))]
+        Tool(ToolKind.CHAMFER, diameter, angle_deg=float(rng.uniform(40.0, 140.0)), tip_mm=tip),
+        Tool(ToolKind.TAPER, diameter, angle_deg=float(rng.uniform(10.0, 40.0)), tip_mm=tip),
+    ][int(rng.integers(6))]
 
 
 def compare(number: int) -> float:

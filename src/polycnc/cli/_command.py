@@ -43,6 +43,11 @@ class _Option(TyperOption):
         shown = super().display_type(ctx)
         return _WORDS.get(shown, shown)
 
+    def _get_number_range_help_str(self) -> str | None:
+        if self.min is None or self.max is None:
+            return super()._get_number_range_help_str()
+        return f"{self.min:.12g} to {self.max:.12g}"
+
 
 class Command(TyperCommand):
     """A command whose refusals of options are sentences."""

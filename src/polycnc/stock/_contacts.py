@@ -18,6 +18,7 @@ class ContactKind(StrEnum):
     DIRECTION = "cut with the spindle turning the wrong way"
     FLUTES = "cut deeper than the flutes are long"
     FIXTURE = "tool in fixture"
+    FIXTURE_SHANK = "shank in fixture"
     FIXTURE_HOLDER = "holder in fixture"
     GOUGE = "gouge"
 

@@ -118,12 +118,15 @@ class Cutting:
             return
         none, grid, least = outlines.none, self.stock.grid, LEAST_DEPTH_SHARE * self.stock.cell_mm
         for fixture in self._fixtures:
-            met, touched = self._figures(ways), self._figures(ways)
-            sweep(fixture.grid, ways.places, none, outlines.core, met, met)
-            above = outlines.holder if len(outlines.holder) else outlines.shank
-            sweep(fixture.grid, ways.places, none, above, touched, touched)
-            self._note(ContactKind.FIXTURE, ways, met, least)
-            self._note(ContactKind.FIXTURE_HOLDER, ways, touched, least)
+            for kind, outline in (
+                (ContactKind.FIXTURE, outlines.core),
+                (ContactKind.FIXTURE_SHANK, outlines.shank),
+                (ContactKind.FIXTURE_HOLDER, outlines.holder),
+            ):
+                if len(outline):
+                    met = self._figures(ways)
+                    sweep(fixture.grid, ways.places, none, outline, met, met)
+                    self._note(kind, ways, met, least)
         if self._target is not None:
             met = self._figures(ways)
             self._target.gouges(ways.places, outlines.cutter, met)

@@ -53,7 +53,7 @@ def _content(path: Path) -> bytes:
             head = file.read(_HEADER)
             count = int(np.frombuffer(head[80:], "<u4")[0]) if len(head) == _HEADER else 0
             binary = size == _HEADER + count * _ROW.itemsize
-            if count > MOST_TRIANGLES and (binary or not _is_text(head)):
+            if count > MOST_TRIANGLES and (binary or not (_is_text(head) or _in_letters(head))):
                 raise UsageError(
                     f"'{path}' has {count:,} triangles",
                     hint=f"At most {MOST_TRIANGLES:,} are read: export it coarser.",
@@ -74,6 +74,11 @@ def _is_text(content: bytes) -> bool:
     return content[:_HEADER].lstrip()[:5].lower() == b"solid"
 
 
+def _in_letters(content: bytes) -> bool:
+    """Tell whether a file begins as a text does: what stands in place of a number of triangles is none then."""
+    return all(9 <= byte <= 13 or 32 <= byte < 127 for byte in content[80:_HEADER])
+
+
 def _text_corners(path: Path, content: bytes) -> npt.NDArray[np.float64]:
     found = _VERTEX.findall(content) if _is_text(content) else []
     try:
@@ -86,7 +91,7 @@ def _text_corners(path: Path, content: bytes) -> npt.NDArray[np.float64]:
 
 
 def check_closed(path: Path, surface: Mesh) -> None:
-    """Refuse a surface that is open or inside out.
+    """Refuse a surface that is open, without volume or inside out.
 
     Raises:
         UsageError: it is.
@@ -98,7 +103,9 @@ def check_closed(path: Path, surface: Mesh) -> None:
         raise UsageError(
             f"the surface in '{path}' is open: {gaps} edges have one side", hint="Repair it, then export it."
         )
-    if surface.volume_mm3 <= 0.0:
+    if surface.volume_mm3 == 0.0:
+        raise UsageError(f"the surface in '{path}' has no volume", hint="Export a solid body.")
+    if surface.volume_mm3 < 0.0:
         raise UsageError(f"the surface in '{path}' is inside out", hint="Turn its normals, then export it.")
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import re
 from dataclasses import replace
 
@@ -9,24 +10,34 @@ from polycnc.errors import UsageError
 from polycnc.stock._tool import Tool, ToolKind
 
 MM_PER_INCH = 25.4
-_NUMBERED = re.compile(r"\bT\s*0*(\d+)\b", re.IGNORECASE)
-_NUMBER = r"(\d+(?:\.\d*)?|\.\d+)"
+_NUMBERED = re.compile(r"\bT(?:OOL)?\s*[#:]?\s*0*(\d{1,9})\b", re.IGNORECASE)
+_NUMBER = r"(\d+(?:\.\d*)?(?![\d.]*e[-+]?\d)|\.\d+)"
 _DIAMETER = re.compile(rf"\bD(?:IA(?:METER)?)?\s*[=:]\s*{_NUMBER}", re.IGNORECASE)
 _CORNER = re.compile(rf"\bCR\s*[=:]\s*{_NUMBER}", re.IGNORECASE)
 _ANGLE = re.compile(
     rf"\b(?:TAPER|TIP|ANGLE)\s*[=:]?\s*{_NUMBER}\s*(?:DEG|°)|{_NUMBER}\s*(?:DEG\w*|°)", re.IGNORECASE
 )
-_SIZE = re.compile(rf"{_NUMBER}\s*(mm\b|inch\b|in\b|\")", re.IGNORECASE)
+_SIZE = re.compile(
+    r"(?<![\d.,/])(?:(?P<whole>\d+)[ -]+)?(?:(?P<over>\d+)/(?P<under>\d+)|(?P<size>\d+(?:[.,]\d*)?|\.\d+))"
+    r"\s*-?(?P<unit>mm|inch|in|\")(?![a-z])",
+    re.IGNORECASE,
+)
+_UNLIKE = re.compile(
+    r"\bprob(?:e|ing)\b|thread[ -]?mill|\bt[ -]slot|dove[ -]?tail|lollipop|undercut|woodruff|key(?:seat|way|slot)"
+    r"|\bradius mill|corner round|\bround[ -]?over|\bform (?:mill|tool|cutter)|\bogee\b|\bcove\b",
+    re.IGNORECASE,
+)
 _LEFT_HAND = re.compile(r"\bleft[ -]?hand(?:ed)?\b|\bLH\b", re.IGNORECASE)
 _POINT_DEG = 118.0
 _CHAMFER_DEG = 90.0
+_MOST_FLANK_DEG = 60.0
 _KINDS = (
     (re.compile(r"\bball|\bspherical", re.IGNORECASE), ToolKind.BALL),
     (re.compile(r"\bbull|\bcorner radius|\btoroid", re.IGNORECASE), ToolKind.BULL),
-    (re.compile(r"chamfer|v-?bit|engrav|countersink|spot", re.IGNORECASE), ToolKind.CHAMFER),
+    (re.compile(r"chamfer|v-?bit|engrav|counter ?sink|spot", re.IGNORECASE), ToolKind.CHAMFER),
     (re.compile(r"drill|\btap\b|\bream", re.IGNORECASE), ToolKind.DRILL),
     (re.compile(r"taper", re.IGNORECASE), ToolKind.TAPER),
-    (re.compile(r"\bmill|cutter|\bflat|\bslot", re.IGNORECASE), ToolKind.FLAT),
+    (re.compile(r"(?:\b|end|face|slot)mill|cutter|\bflat|\bslot", re.IGNORECASE), ToolKind.FLAT),
     (re.compile(r"\bholes?\b", re.IGNORECASE), ToolKind.DRILL),
 )
 
@@ -41,8 +52,11 @@ def tool_of_remark(remark: str, *, inch: bool = False) -> Tool | None:
     """Return the tool that a remark describes, None if that cannot be read.
 
     Read are `T1 D=10. CR=0. - ZMIN=-12. - flat end mill` and the like, and a size beside a word for a kind: `end mill
-    10 mm`, `drill 8.5 mm`. With `inch` numbers without a unit are inches.
+    10 mm`, `1/4" end mill`, `drill 8.5 mm`. With `inch` numbers without a unit are inches. Probes, and tools that cut
+    under what is above them or by a form, are none that can be read.
     """
+    if _UNLIKE.search(remark):
+        return None
     kind = next((kind for pattern, kind in _KINDS if pattern.search(remark)), None)
     size = _diameter_mm(remark, inch)
     if size is None or (kind is None and not _DIAMETER.search(remark)):
@@ -50,6 +64,8 @@ def tool_of_remark(remark: str, *, inch: bool = False) -> Tool | None:
     corner = float(found[1]) * (MM_PER_INCH if inch else 1.0) if (found := _CORNER.search(remark)) else 0.0
     angle = float(found[1] or found[2]) if (found := _ANGLE.search(remark)) else 0.0
     kind = kind or ToolKind.FLAT
+    if kind is ToolKind.CHAMFER and angle <= _MOST_FLANK_DEG and "chamfer" in remark.lower():
+        angle *= 2.0  # chamfering tools are named by their flank, V-bits and countersinks by their point
     if kind is ToolKind.FLAT and corner > 0.0:
         kind = ToolKind.BALL if corner >= 0.5 * size else ToolKind.BULL
     try:
@@ -66,7 +82,7 @@ def _tool(kind: ToolKind, size: float, corner: float, angle: float) -> Tool | No
         case ToolKind.DRILL:
             return Tool(kind, size, angle_deg=angle or _POINT_DEG)
         case ToolKind.CHAMFER:
-            return Tool(kind, size, angle_deg=2.0 * angle if 0.0 < angle <= 60.0 else angle or _CHAMFER_DEG)
+            return Tool(kind, size, angle_deg=angle or _CHAMFER_DEG)
         case ToolKind.TAPER:
             return Tool(kind, size, angle_deg=angle) if angle > 0.0 else None
         case _:
@@ -76,6 +92,10 @@ def _tool(kind: ToolKind, size: float, corner: float, angle: float) -> Tool | No
 def _diameter_mm(remark: str, inch: bool) -> float | None:
     if found := _DIAMETER.search(remark):
         return float(found[1]) * (MM_PER_INCH if inch else 1.0)
-    if found := _SIZE.search(remark):
-        return float(found[1]) * (1.0 if found[2].lower() == "mm" else MM_PER_INCH)
+    if found := _SIZE.search(_NUMBERED.sub("", remark)):
+        if found["over"]:
+            size = float(found["whole"] or 0.0) + float(found["over"]) / (float(found["under"]) or math.inf)
+        else:
+            size = float(found["size"].replace(",", "."))
+        return size * (1.0 if found["unit"].lower() == "mm" else MM_PER_INCH)
     return None

@@ -39,6 +39,7 @@ TOOLS = {
     4: MILL.model_copy(update={"shank": ((3.0, 14.0),)}),
     5: MILL.model_copy(update={"left_hand": True}),
     6: MILL.model_copy(update={"flute_mm": 3.5}),
+    7: MILL.model_copy(update={"shank": ((12.0, 30.0),), "holder": ((40.0, 50.0),)}),
 }
 # What is right, what is wrong instead, and all that is said of it: the error, or keys of remarks, each with its line.
 FAULTS: dict[str, tuple[str, str, list[tuple[str, int]]]] = {
@@ -56,6 +57,7 @@ FAULTS: dict[str, tuple[str, str, list[tuple[str, int]]]] = {
     "a tool for the other way": ("T1 M6", "T5 M6", [("direction", 6), ("direction", 10)]),
     "a tool in the clamp": ("X-10 Y30\n", "Z10 X25 Y0\nZ20\nX-10 Y30\n", [("fixture", 8), ("fixture", 9)]),
     "a holder in the clamp": ("T1 M6", "T2 M6", [("fixture_holder", 6)]),
+    "a shank in the clamp": ("T1 M6", "T7 M6", [("fixture_shank", 6)]),
     "over-travel with the tool's length": ("G0 Z20\nM30", "G0 Z69\nM30", [(TOO_HIGH, 11)]),
     "a gouge in a floor": ("Z-4\nG1 X70\n", "Z-4.05\nG1 X70\n", [("gouge", 10)]),
     "a gouge in a wall": ("X-10 Y30", "X-10 Y30.05", [("gouge", 10)]),

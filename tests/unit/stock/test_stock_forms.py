@@ -117,6 +117,7 @@ def test_wrong_forms_are_refused(text: str, wrong: str) -> None:
     ("content", "wrong"),
     [
         (b"", "no STL"),
+        (b"PK\x03\x04 or a text\n" * 9, "no STL"),
         (b"solid x\nvertex 1 2\n", "no STL|wrong numbers"),
         (b"solid x\nvertex 1 2 a\nvertex 1 2 3\nvertex 4 5 6\n", "no STL"),
         (b"solid x\nvertex 1 2 nan\nvertex 1 2 3\nvertex 4 5 6\n", "wrong numbers"),
@@ -166,6 +167,12 @@ def test_a_body_inside_out_is_refused(tmp_path: Path) -> None:
     type(surface)(surface.vertices, surface.faces[:, ::-1]).write_stl(file)
     with pytest.raises(UsageError, match="inside out"):
         Form(str(file)).body(circle(), TOOLS)
+    type(surface)(surface.vertices * (1.0, 1.0, 0.0), surface.faces).write_stl(file)
+    with pytest.raises(UsageError, match="no volume"):
+        Form(str(file)).body(circle(), TOOLS)
+
+
+UNLIKE = ("probe", "thread mill", "T-slot mill", "dovetail mill", "lollipop mill", "radius mill", "form mill")
 
 
 @pytest.mark.parametrize(
@@ -180,7 +187,15 @@ def test_a_body_inside_out_is_refused(tmp_path: Path) -> None:
         ("Four holes, drill 5.5 mm, chip breaking", Tool(ToolKind.DRILL, 5.5, angle_deg=118.0)),
         ("T7 V-Bit 90 deg 12 mm", Tool(ToolKind.CHAMFER, 12.0, angle_deg=90.0)),
         ("T8 D=6. - left hand end mill", Tool(ToolKind.FLAT, 6.0, left_hand=True)),
-        ('1/4 inch end mill 0.25"', Tool(ToolKind.FLAT, 6.35)),
+        ("T9 V-Bit {60 deg 12 mm}", Tool(ToolKind.CHAMFER, 12.0, angle_deg=60.0)),
+        ('T1 - 1/4" end mill', Tool(ToolKind.FLAT, 6.35)),
+        ("Tool 3: 2 1/2 inch face mill", Tool(ToolKind.FLAT, 63.5)),
+        ("T3 1/2 inch end mill", Tool(ToolKind.FLAT, 12.7)),
+        ('1/0" end mill', None),
+        ("TC: 5mm_Endmill", Tool(ToolKind.FLAT, 5.0)),
+        ("End mill 10,5 mm", Tool(ToolKind.FLAT, 10.5)),
+        ("T1 D=1e9 - flat end mill", None),
+        *((f"T5 D=12. CR=1. - ZMIN=-3. - {name}", None) for name in UNLIKE),
         ("Four holes of 6.6 mm through the corners", Tool(ToolKind.DRILL, 6.6, angle_deg=118.0)),
         ("Hole, end mill 8 mm on a helix", Tool(ToolKind.FLAT, 8.0)),
         ("T1 D=0. - flat end mill", None),
@@ -189,14 +204,13 @@ def test_a_body_inside_out_is_refused(tmp_path: Path) -> None:
     ],
 )
 def test_tools_in_remarks(remark: str, tool: Tool | None) -> None:
-    if remark.startswith("1/4"):
-        remark = remark[3:]
     assert tool_of_remark(remark) == tool
 
 
 def test_remarks_in_inches() -> None:
     assert tool_of_remark("T3 D=0.5 CR=0. - flat end mill", inch=True) == Tool(ToolKind.FLAT, 12.7)
     assert tool_number("T03 D=0.5") == 3
+    assert tool_number("Tool #12: drill") == 12
     assert tool_number("finish") is None
 
 
