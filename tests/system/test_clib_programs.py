@@ -34,9 +34,9 @@ def _said(kind: str) -> str:
     return SAID.get(kind) or facade_says()
 
 
-def _linked(kind: str, folder: Path, to: Path) -> Path:
-    made = to / PROGRAMS[kind]
-    source = EXAMPLES / "c" / f"{PROGRAMS[kind]}.c"
+def _linked(kind: str, folder: Path, to: Path, name: str = "") -> Path:
+    made = to / (name or PROGRAMS[kind])
+    source = EXAMPLES / "c" / f"{made.name}.c"
     subprocess.run(
         ["gcc", "-std=c11", *WARNINGS, "-I", folder, "-o", made, source, "-L", folder,
          f"-l{library_of(kind).name}", f"-Wl,-rpath,{folder}"], check=True,
@@ -71,6 +71,22 @@ def doors(tmp_path_factory: pytest.TempPathFactory) -> Iterator[dict[str, Door]]
 @pytest.mark.parametrize("kind", PROGRAMS)
 def test_a_program_links_and_says_what_it_has_to(kind: str, tmp_path: Path, doors: dict[str, Door]) -> None:
     assert _run(doors[kind].place, _linked(kind, built(kind), tmp_path)) == _said(kind)
+
+
+LONGER = {
+    "fanuc_events": "mode 1, run 0, motion 0, emergency 0, alarm 0\n#500 = 3.0\n#501 = 1.0\n#502 = 0.0\n"
+    "too short 2\nfree 0\nfree again -8\n",
+    "apci_shaft": "init 0\nturn 1: at 20.000 10.000, mark passed 1 times\n"
+    "turn 2: at 30.000 12.500, mark passed 0 times\nturn 3: at 5.000 2.500, mark passed 1 times\nerrors 0\n",
+    "imc_contour": "open 0\nat 3000 6000\nerrors 0\nclose 0\n",
+}
+"""The slave of the shaft turns by 0.5, 0.25 and 0.4 of the master's 20, 10 and -25 mm."""
+
+
+@pytest.mark.parametrize("name", LONGER)
+def test_a_longer_program_says_what_it_has_to(name: str, tmp_path: Path, doors: dict[str, Door]) -> None:
+    kind = name.partition("_")[0]
+    assert _run(doors[kind].place, _linked(kind, built(kind), tmp_path, name)) == LONGER[name]
 
 
 def test_a_program_against_the_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
