@@ -404,7 +404,9 @@ def test_rdigi_resets_the_latched_signals_of_its_axis(pc: Pc) -> None:
     pc.board.advance(2)
     assert [pcap.rddigib(0, bit) for bit in (18, 19, 20)] == [1, 1, 1]
     assert [pcap.rddigib(2, bit) for bit in (18, 19, 20)] == [0, 0, 0]
+    pc.board.state.axis["index_now"][:2] = 1  # in this scan
     pcap.rdigi(pcap.TSRP(an=0))
+    assert list(pc.board.state.axis["index_now"][:2]) == [0, 1]
     assert [pcap.rddigib(0, bit) for bit in (17, 18, 19, 20)] == [0, 0, 0, 0]
     pcap.rddigi(record := pcap.TSRP(an=0))
     assert record.digi & (Digi.encoder_error | Digi.index_latched | Digi.strobe_latched) == 0
