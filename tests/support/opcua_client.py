@@ -1,4 +1,4 @@
-"""A client of o6, which stands on open62541: it reads, writes and subscribes; each answer is a line of JSON."""
+"""A client of o6, which is built on open62541: it reads, writes and subscribes; each answer is a line of JSON."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ import sys
 import time
 from typing import Any
 
-import o6  # type: ignore[import-not-found]
+import o6
 
 CHANNEL = "ns=1;s=machine/CncChannelList/Channel1"
 
