@@ -198,3 +198,31 @@ def test_processes_without_machines_are_refused(text: str, said: str, tmp_path: 
     path.write_text('processes = 2\n[[machine]]\nname = "m"\ncontroller = "plain"\ncount = 2\n')
     with pytest.raises(PolycncError, match="3/2 is no part of 2 processes"):
         plan_of(Flags(path, {}, part="3/2"))
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        (
+            '[[machine]]\nname = "a b"\ncontroler = "fanuc"\n',
+            [
+                "serve.toml:2:1: 'name' cannot be \"a b\"",
+                "unknown key 'controler' in [[machine]]",
+                "up to 32 letters",
+            ],
+        ),
+        ("machine = []\n", ["serve.toml:1:1: 'machine' must have at least 1 element"]),
+    ],
+)
+def test_a_wrong_file_of_machines_is_refused_in_words(text: str, said: list[str], tmp_path: Path) -> None:
+    path = tmp_path / "serve.toml"
+    path.write_text(text)
+    with pytest.raises(PolycncError) as caught:
+        load_serve_file(path)
+    assert all(each in str(caught.value) for each in said)
+    assert not re.search(r"validation|pattern|\^\(|at least.*not 0", str(caught.value))
+
+
+def test_two_kinds_of_machine_at_once_are_named() -> None:
+    with pytest.raises(PolycncError, match="--fanuc and --plain at once"):
+        plan_of(Flags(None, {"fanuc": "", "plain": "mill3"}))

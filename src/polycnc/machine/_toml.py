@@ -234,6 +234,11 @@ def _explain(
         case "missing":
             what = f"{_table_name(path[:-1])} has no '{key}'"
             hint = f"add the line {_opening(field, key)}"
+        case "string_pattern_mismatch":
+            what = f"'{key}' cannot be {shown}"
+            hint = f"allowed: {field.description}" if field and field.description else ""
+        case "too_short" | "too_long" | "string_too_short" | "string_too_long":
+            what = f"'{key}' {_length_text(context, 'character' if kind.startswith('string') else 'element')}"
         case "literal_error":
             what = f"'{key}' must be {context['expected']}, not {shown}"
             hint = _suggest(str(detail["input"]), re.findall(r"'([^']*)'", context["expected"]))
@@ -252,15 +257,28 @@ def _explain(
     return _Problem(path, kind, what, hint, locator.position(path))
 
 
+def _length_text(context: Mapping[str, Any], what: str) -> str:
+    for bound, word in (("min_length", "at least"), ("max_length", "at most")):
+        if (count := context.get(bound)) is not None:
+            return f"must have {word} {count} {what}{'s' if count != 1 else ''}"
+    return "has the wrong length"
+
+
 def _without_echoes(problems: list[_Problem]) -> list[_Problem]:
-    """Drop "has no 'speed'" where the same table has an unknown key whose hint already says 'speed'."""
+    """Drop what follows from another problem.
+
+    That is "has no 'speed'" where the same table has an unknown key whose hint already says 'speed', and an array that
+    is too short only because its elements are wrong.
+    """
+    wrong = {each.path[:length] for each in problems for length in range(len(each.path))}
     suggested = {
         (*each.path[:-1], key)
         for each in problems
         if each.kind == "extra_forbidden"
         for key in re.findall(r"did you mean '([^']*)'", each.hint)
     }
-    return [each for each in problems if each.kind != "missing" or each.path not in suggested]
+    echoes = {"missing": suggested, "too_short": wrong}
+    return [each for each in problems if each.path not in echoes.get(each.kind, ())]
 
 
 def _suggest(key: str, known: Sequence[str]) -> str:

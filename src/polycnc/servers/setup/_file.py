@@ -27,7 +27,13 @@ class MachineTable(StrictModel):
     count up.
     """
 
-    name: Annotated[str, Field(pattern=r"^(\{n\})?[A-Za-z0-9][A-Za-z0-9_.{}-]{0,31}$")]
+    name: Annotated[
+        str,
+        Field(
+            pattern=r"^(\{n\})?[A-Za-z0-9][A-Za-z0-9_.{}-]{0,31}$",
+            description="up to 32 letters, digits, '_', '.' and '-', the first a letter or digit; {n} for its number",
+        ),
+    ]
     count: Annotated[int, Field(ge=1, le=MOST_MACHINES)] = 1
     controller: Literal["fanuc", "plain", "bosch", "apci", "imc"]
     file: str | None = None

@@ -174,7 +174,12 @@ def _asked(
     """Return the machines, the doors that they share, the folder of node sets, and the file that says so."""
     named = [kind for kind, machine in flags.kinds.items() if machine is not None]
     if flags.file is None:
-        if len(named) != 1:
+        if len(named) > 1:
+            raise UsageError(
+                f"{' and '.join(f'--{kind}' for kind in named)} at once",
+                hint="Serve several machines from a file of machines.",
+            )
+        if not named:
             raise UsageError(
                 "which machine shall be served?", hint="Write --fanuc, --plain mill3, or a file of machines."
             )
