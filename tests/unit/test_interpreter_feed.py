@@ -146,7 +146,7 @@ def test_the_time_of_a_dwell_is_neither_a_feed_nor_a_position() -> None:
     [
         ("G4", "1:1: a dwell (G4) without a time"),
         ("G4 P-1", "1:4: the dwell P-1 is negative"),
-        ("G4 P99999999", "1:4: the dwell P99999999 is longer than anybody waits"),
+        ("G4 P99999999", "1:4: the dwell P99999999 is longer than 116 days"),
         ("F100 G4 P1 X5", "1:12: a dwell (G4) and a move in one block"),
     ],
 )

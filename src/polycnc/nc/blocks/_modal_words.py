@@ -111,9 +111,11 @@ def dwell(block: BlockContext, g: GWord) -> list[Wait]:
         raise block.problem(f"a dwell (G{g.code}) without a time", f"Add {letters} and the time.", g.word)
     seconds = _dwell_s(block, word, block.dialect.dwell[letter])
     if not 0.0 <= seconds <= LONGEST_BLOCK_S:
-        what = "negative" if seconds < 0.0 else "longer than anybody waits"
+        what = "negative" if seconds < 0.0 else "longer than 116 days"
         raise block.problem(
-            f"the dwell {word.letter}{code_text(word.value)} is {what}", "Write a time from 0 up.", word
+            f"the dwell {word.letter}{code_text(word.value)} is {what}",
+            "Write a time from 0 up, and mind its unit.",
+            word,
         )
     return [Wait(seconds, block.line)]
 
