@@ -479,6 +479,27 @@ def test_floods_and_nonsense_end_the_connection_and_nothing_else(
     with_client(served, visit)
 
 
+def test_connections_that_only_begin_make_room_for_others(served: Served) -> None:
+    hello = _hello()
+
+    async def crowded(client: Client) -> None:
+        lines = [socket.create_connection(("127.0.0.1", served.port), timeout=5) for _ in range(130)]
+        for number, line in enumerate(lines):
+            with suppress(ConnectionError):
+                line.sendall(hello[: number % len(hello)])
+
+        async def visit() -> None:
+            async with connected(served) as other:
+                assert await value(other, f"{CHANNEL}/Id") == 1
+
+        await visit()
+        assert await value(client, f"{CHANNEL}/Id") == 1  # who has a session keeps it
+        for line in lines:
+            line.close()
+
+    with_client(served, crowded)
+
+
 async def _secured(served: Served, folder: Path) -> Client:
     """Return a client with a certificate of its own, which signs and encrypts."""
     from asyncua.crypto.cert_gen import setup_self_signed_certificate

@@ -28,6 +28,15 @@ class Connection(OPCUAProtocol):
 
     _buffer: bytes
 
+    def connection_made(self, transport: asyncio.BaseTransport) -> None:
+        """Take a client; where there are too many, the oldest without a session makes room."""
+        if len(self.clients) >= self.iserver.max_connections:
+            idle = next((each for each in self.clients if not _has_session(each)), None)
+            if idle is not None:
+                self.clients.remove(idle)
+                idle.transport.abort()
+        super().connection_made(transport)
+
     def data_received(self, data: bytes) -> None:
         """Take bytes of the client."""
         transport = self.transport
@@ -51,6 +60,11 @@ class Connection(OPCUAProtocol):
                 await asyncio.sleep(treatment.delay_s)
         answered: bool = await super()._process_one_msg(header, buf)
         return answered
+
+
+def _has_session(connection: Any) -> bool:
+    processor = connection.processor
+    return processor is not None and processor.session is not None and processor.session.is_activated()
 
 
 def _is_bounded(data: bytes) -> bool:
