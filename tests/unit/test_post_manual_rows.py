@@ -18,6 +18,12 @@ Case = tuple[str | tuple[str, ...], str, dict[str, Any]]
 NUMBERED: dict[str, Any] = {"sequence_place": 1}
 MARKED: dict[str, Any] = {"sequence_place": 2}
 
+
+def _six(operator: str, others: str, one: str, at: int) -> str:
+    """Return an IF of six comparisons, of which the one at `at` decides."""
+    return f"IF({operator.join(one if each == at else others for each in range(6))})\na\nELSE\nb\nENDIF"
+
+
 ROWS: dict[str, list[Case]] = {
     "string.literal": [
         (("a b  C", "( x,y;z )", " %d{}\\n#[1]^~"), "a b  C|( x,y;z )| %d{}\\n#[1]^~", {}),
@@ -197,6 +203,10 @@ ROWS: dict[str, list[Case]] = {
         (('<ENDOFLINE=" ;*">a\nb', "$X$\n$X$\n!-G00!", "<ENDOFLINE=\"\">c"), "a ;*|b ;*|X1.500 ;*|G00 ;*|c",
          {"X": 1.5}),
         ('<ENDOFLINE="e">a\n@0@b', "N10ae|be", NUMBERED),
+        ('<ENDOFLINE=";">$X$!-G00!\n$X$!-G00!!G90!\n$X$$Y$', "X1.500 G00;|G90;|Y2.000;",
+         {"X": 1.5, "Y": 2.0, "separator": " "}),
+        ('<STARTOFLINE="/"><ENDOFLINE=";">$X$!-G00!\n$X$$Y$', "/X1.500 G00;|/Y2.000;",
+         {"X": 1.5, "Y": 2.0, "separator": " "}),
         ('<ENDOFLINE="e"><OUTPUTORDER=1>!M03!!G00!\'a,200\'', "G00M03ae", {}),
     ],
     "init.key": [
@@ -258,8 +268,12 @@ ROWS: dict[str, list[Case]] = {
     "logic.and": [
         ("IF(X==1&&Y==2&&Z==3)\na\nENDIF\nIF(X==1&&Y==3)\nb\nENDIF\nIF(X==2&&Y==2)\nc\nENDIF\nd", "a|d",
          {"X": 1.0, "Y": 2.0, "Z": 3.0}),
+        *((_six("&&", "X==1", "X==9", at), "b", {"X": 1.0}) for at in range(6)),
+        (_six("&&", "X==1", "X==1", 0), "a", {"X": 1.0}),
     ],
     "logic.or": [
+        *((_six("||", "X==9", "X==1", at), "a", {"X": 1.0}) for at in range(6)),
+        (_six("||", "X==9", "X==9", 0), "b", {"X": 1.0}),
         ("IF(X==1||Y==9)\na\nENDIF\nIF(X==9||Y==2)\nb\nENDIF\nIF(X==2||Y==1)\nc\nENDIF\nIF(X==1||Y==2)\nd\nENDIF",
          "a|b|d", {"X": 1.0, "Y": 2.0}),
     ],
@@ -309,7 +323,7 @@ def test_macros_write_what_the_manual_states(
 ) -> None:
     each = (macros,) if isinstance(macros, str) else macros
     words = {name: value for name, value in given.items() if name.isupper()}
-    parameters = {name: value for name, value in given.items() if name.startswith("sequence_")}
+    parameters = {name: value for name, value in given.items() if name.startswith("se")}
     tables = _tables(given)
     assert blocks_of(*each, words=words, tables=tables, **parameters) == blocks.split("|")
     check_every_way(*each, words=words, tables=tables, **parameters)
@@ -473,6 +487,14 @@ def test_a_posted_tool_change_has_the_number_in_the_format_of_its_word() -> None
         ]  # fmt: skip
 
 
+@pytest.mark.covers("post.macro.tool_change", "post.word.TOOLCHANGE")
+def test_each_tool_of_a_path_is_changed_by_the_macro() -> None:
+    tools = (1, 2, 30, 4, 1)
+    path = "FEDRAT/300\n" + "".join(f"LOADTL/{tool}\nGOTO/{at},0,0\n" for at, tool in enumerate(tools))
+    blocks, _ = posted(path, control(macros={"TOOL_CHANGE": "!M06!$TOOLCHANGE$"}))
+    assert [each for each in blocks if "M06" in each] == [f"M06T{tool}" for tool in tools]
+
+
 @pytest.mark.covers("post.seq.suppress", "post.seq.output", "post.seq.option2", "post.block.sequence_number")
 def test_a_posted_program_is_numbered_where_its_macros_say_so() -> None:
     macros = {**WORDS, "TOOL_CHANGE": "@1@!M06!$TOOLCHANGE$", "LINEAR": "@0@!-G01!$X$$Y$$Z$"}
@@ -507,7 +529,7 @@ X = { order = 18 }
 F = { order = 30 }
 [g_code]
 GO = { group = "a" }
-STAY = { group = "a" }
+Stay = { group = "a" }
 [m_code]
 COOL = { group = "a" }
 [function_variables]
@@ -523,4 +545,4 @@ LINEAR = '''
     written: list[str] = []
     run = parse_control(text).start(written.append)
     run.call("LINEAR", {"X": 1.25})
-    assert written == ["L04 G7 M88 S44 A2.5\n", "x STAY L07 S44\n", "L10 y G7\n"]
+    assert written == ["L04 G7 M88 S44 A2.5\n", "x Stay L07 S44\n", "L10 y G7\n"]

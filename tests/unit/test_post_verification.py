@@ -278,22 +278,50 @@ def test_a_move_that_rounds_to_nothing_in_fast_motion_is_no_deviation(name: str)
     assert proof.deviation_mm < 5e-4
 
 
-def test_arcs_written_with_three_decimals_are_proven() -> None:
+def coarse(name: str, decimals: int, units: str, radius: bool) -> ControlFile:
+    """Return a shipped control file with other decimals, and with R in place of the centres of arcs."""
+    text = shipped_text(name).replace("decimals = 3", f'decimals = {decimals}\nunits = "{units}"')
+    text = text.replace("%.3f", f"%.{decimals}f")
+    for center in ("$I$$J$", "$I$$K$", "$J$$K$") if radius else ():
+        text = text.replace(center, "&R&$R$")
+    return parse_control(text, "mine.toml")
+
+
+@pytest.mark.parametrize(
+    ("name", "decimals", "units", "radius", "arcs_left"),
+    [
+        ("fanuc-mill", 3, "mm", False, 60),
+        ("grbl", 2, "inch", False, 42),
+        ("linuxcnc-mill", 1, "mm", False, 40),
+        ("fanuc-mill", 3, "inch", False, 48),
+        ("fanuc-mill", 2, "inch", True, 22),
+    ],
+)
+def test_arcs_are_written_so_that_the_control_takes_them(
+    name: str, decimals: int, units: str, radius: bool, arcs_left: int
+) -> None:
+    # Of every size and sweep, whole turns and what rounds to them or to nothing among them: 60.
     chance = random.Random(5)
     lines = ["LOADTL/1", "SPINDL/RPM,9000,CLW", "FEDRAT/6000,MMPM", "GOTO/0,0,-1"]
     x = y = 0.0
     for _ in range(60):
-        radius, begin = 10.0 ** chance.uniform(-0.5, 1.3), chance.uniform(0.0, math.tau)
-        sense, turn = chance.choice((-1, 1)), chance.uniform(0.05, 6.0)
-        center = x - radius * math.cos(begin), y - radius * math.sin(begin)
-        x, y = (
-            c + radius * f(begin + sense * turn) for c, f in zip(center, (math.cos, math.sin), strict=True)
-        )
-        lines.append(f"CIRCLE/{center[0]:.6f},{center[1]:.6f},-1,0,0,{sense},{radius:.6f}")
+        size, begin = chance.choice((0.4, 10.0 ** chance.uniform(-0.5, 1.3))), chance.uniform(0.0, math.tau)
+        sense, turn = chance.choice((-1, 1)), chance.choice((chance.uniform(0.05, 6.0), 0.5, 6.27, math.tau))
+        center = x - size * math.cos(begin), y - size * math.sin(begin)
+        x, y = (c + size * f(begin + sense * turn) for c, f in zip(center, (math.cos, math.sin), strict=True))
+        lines.append(f"CIRCLE/{center[0]:.6f},{center[1]:.6f},-1,0,0,{sense},{size:.6f}")
         lines.append(f"GOTO/{x:.6f},{y:.6f},-1")
-    proof = post_file(parse_tool_path("\n".join(lines) + "\n"), "fanuc-mill", verify=True).verification
+    path = parse_tool_path("\n".join(lines) + "\n")
+    result = post_file(path, coarse(name, decimals, units, radius), verify=True)
+    proof = result.verification
     assert proof is not None
-    assert proof.deviation_mm <= proof.tolerance_mm == pytest.approx(0.00125)
+    assert proof.run.alarms == []
+    assert result.text is not None
+    arcs = re.findall(r"^[^(\n]*[IJR]-?[0-9]", result.text, re.MULTILINE)
+    assert len(arcs) == arcs_left
+    unit_mm = 10.0**-decimals * (25.4 if units == "inch" else 1.0)
+    assert proof.deviation_mm <= proof.tolerance_mm == pytest.approx(1.25 * unit_mm)
+    assert proof.run.cutting_path_mm == pytest.approx(proof.path_feed_mm, rel=0.01 + unit_mm)
 
 
 @pytest.mark.parametrize(

@@ -123,7 +123,12 @@ def test_a_turret_counts_as_a_change_of_tool() -> None:
     program = "(ROUGH)\nT0101\nG97 S1000 M3\nG0 X20. Z2.\nG1 Z-5. F0.1\n(FINISH)\nT0202\nG1 Z-9.\nM30\n"
     result = polycnc.run(program, "lathe2", "fanuc-lathe")
     assert [(each.name, each.tool) for each in result.operations] == [("ROUGH", 1), ("FINISH", 2)]
+    assert polycnc.run(f"O0001\n{program}").machine == "lathe2"  # its dialect is guessed to be one of lathes
+    assert polycnc.run(f"O0001\n{program}", "mill3").machine == "mill3"
+    assert polycnc.run("G1 X9 F900\nM30\n").machine == "mill3"
     assert polycnc.check(program, "lathe2", "fanuc-lathe", strict=True) == []
+    assert polycnc.check("G28 V0.\n", "mill3", "fanuc-lathe") == []
+    assert polycnc.check("G28 V0.\n", dialect="fanuc-lathe") != []
     bare = "G97 S1000 M3\nG1 X5. F0.1\nM30\n"
     assert [error.code for error in polycnc.check(bare, "lathe2", "fanuc-lathe", strict=True)] == ["no_tool"]
 

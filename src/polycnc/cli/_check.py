@@ -52,7 +52,7 @@ def check_command(
     from polycnc.machine import load_machine
     from polycnc.nc import load_dialect
 
-    config = load_machine(machine)
+    load_machine(machine)
     if dialect is not None:
         load_dialect(dialect)
     found = _Findings()
@@ -64,7 +64,7 @@ def check_command(
             continue
         found.reports[text.name] = runner.inspect(
             text,
-            config,
+            machine,
             dialect,
             root=root,
             ignore=options.codes_of(ignore),

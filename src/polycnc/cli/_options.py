@@ -19,7 +19,7 @@ Machine = Annotated[
     typer.Option(
         "--machine",
         "-m",
-        help="The machine: a preset or a TOML file (default: mill3).",
+        help="The machine: a preset or a TOML file (default: mill3, of lathe dialects lathe2).",
         metavar="FILE|PRESET",
         autocompletion=machine_names,
     ),

@@ -90,10 +90,9 @@ def run_command(
     read = (stock if stock != "auto" else None, target, *body["fixtures"])
     outputs.check(programs, (*programs, machine, dialect, keys, *read))
     texts = [read_program(program) for program in programs]
-    config = load_machine(machine)
-    _say_if_ideal(config, servo)
+    load_machine(machine)
     settings = runner.RunSettings(
-        config,
+        machine,
         dialect,
         servo=servo,
         skip_levels=frozenset(skip or ()),
@@ -106,9 +105,10 @@ def run_command(
         save_parameters=save_parameters,
         **body,
     )
+    _say_if_ideal(settings.machine_of(texts[0]), servo)
     results = []
     for text in texts:
-        results.append(_run(text, config, settings, outputs))
+        results.append(_run(text, settings, outputs))
         if not as_json:
             print_summary(results[-1], units)
     if as_json:
@@ -119,10 +119,11 @@ def run_command(
     sys.exit(0 if all(result.ok and not result.collisions for result in results) else 1)
 
 
-def _run(text: ProgramText, config: MachineConfig, settings: RunSettings, outputs: _Outputs) -> RunResult:
+def _run(text: ProgramText, settings: RunSettings, outputs: _Outputs) -> RunResult:
     """Run a program, and write its trace and its plot."""
     from polycnc import runner
 
+    config = settings.machine_of(text)
     with ExitStack() as stack:
         sinks: list[Callable[..., None]] = []
         picture = None

@@ -8,7 +8,7 @@ from pathlib import Path
 
 from polycnc.cnc import RunOptions, let_pass
 from polycnc.errors import ProgramError
-from polycnc.machine import Machine, MachineConfig, load_machine
+from polycnc.machine import Machine, MachineConfig
 from polycnc.nc import Dialect, ProgramText
 from polycnc.runner._execution import Progress, run_to_end
 from polycnc.runner._program_control import control_for, run_under
@@ -122,7 +122,7 @@ def _inspected(
     if (endless := text.endless_line()) is not None:
         return CheckReport([endless], [])
     stock = settings.stock
-    simulated = Machine(load_machine(settings.machine))
+    simulated = Machine(settings.machine_of(text))
     control = control_for(chosen, text, simulated, settings.surroundings_of(program))
     if control is not None and control.has_statements(text):
         errors = control.check(text)

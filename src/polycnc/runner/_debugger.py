@@ -7,9 +7,10 @@ from pathlib import Path
 
 from polycnc.cnc import Breakpoint, Control, ControlData, ControlEvent, RunState, Status, Step
 from polycnc.errors import UsageError
-from polycnc.machine import MachineConfig, load_machine
+from polycnc.machine import MachineConfig
 from polycnc.nc import Dialect, ProgramText, dialect_for
 from polycnc.runner._program_control import root_of, statements_for
+from polycnc.runner._settings import RunSettings
 
 
 @dataclass(frozen=True, slots=True)
@@ -42,9 +43,10 @@ class Debugger:
         self.program = program
         chosen = dialect_for(program, dialect)
         self._root = root_of(program, root)
-        self._statements = statements_for(chosen, program, load_machine(machine), self._root)
+        config = RunSettings(machine, chosen).machine_of(program)
+        self._statements = statements_for(chosen, program, config, self._root)
         self.control = (
-            Control(load_machine(machine), dialect=chosen, data=ControlData(count_parts=False))
+            Control(config, dialect=chosen, data=ControlData(count_parts=False))
             if self._statements is None
             else self._statements.control
         )

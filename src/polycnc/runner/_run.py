@@ -9,7 +9,7 @@ from typing import Literal, overload
 
 from polycnc.cnc import ProgramRun, RunOptions
 from polycnc.errors import ProgramError
-from polycnc.machine import Machine, MachineConfig, load_machine
+from polycnc.machine import Machine, MachineConfig
 from polycnc.nc import Dialect, KeepingLanguage, ProgramText, line_of
 from polycnc.outputs import complete_or_absent
 from polycnc.runner._event_log import EventLog
@@ -107,10 +107,10 @@ def run(
     """Run a part program on a simulated machine and return times, lengths, extents and messages.
 
     `program` is a path, or the text itself if it has more than one line. `machine` is a preset, a TOML file
-    or a configuration (the 3-axis mill if absent), `dialect` a name (chosen by the file's extension, else
-    DIN). With `trace` the result holds one row per control cycle; `rows` gets the same in pieces,
-    [cycles, columns], as it is recorded, `tagged_rows` gets with each piece the tags of its blocks and the records that
-    read them. `servo` simulates the position loops. Blocks with a skip mark `/n`
+    or a configuration (if absent the 3-axis mill, or a lathe where the dialect is one of lathes), `dialect` a name
+    (chosen by the file's extension, else DIN). With `trace` the result holds one row per control cycle; `rows` gets
+    the same in pieces, [cycles, columns], as it is recorded, `tagged_rows` gets with each piece the tags of its blocks
+    and the records that read them. `servo` simulates the position loops. Blocks with a skip mark `/n`
     are left out for n in `skip_levels`. Program stops are passed, and told in the messages; with `stop_at_m0` the
     run ends at the first M0. `feed_override` is the operator's, up to 2. `progress` is called now and then with the
     part that is done, 0 to 1; it goes back where sub-programs repeat. `ignore` names G and M codes, like "G43.4", that
@@ -171,7 +171,8 @@ def run_program(
         AlarmError: with `check`, the machine stopped.
         UsageError: no such file, machine or dialect.
     """
-    text, config = program_text(program), load_machine(settings.machine)
+    text = program_text(program)
+    config = settings.machine_of(text)
     collector = TraceCollector(config, settings.servo) if trace else None
     tagged = [sink for sink in (collector.add_tagged if collector else None, tagged_rows) if sink is not None]
     form, machining = settings.form(), None

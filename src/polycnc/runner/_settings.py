@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from polycnc.errors import UsageError
-from polycnc.machine import MachineConfig
+from polycnc.machine import MachineConfig, load_machine
 from polycnc.nc import ChosenDialect, Dialect, ProgramText, choose_dialect
 from polycnc.outputs import check_output, keep_inputs
 from polycnc.runner._execution import LOOP_LIMIT_S
@@ -18,6 +18,8 @@ if TYPE_CHECKING:
     from polycnc.stock import Form
 
 Program = str | Path | ProgramText
+
+_LATHE = "lathe2"
 
 
 @dataclass(frozen=True, slots=True)
@@ -88,6 +90,15 @@ class RunSettings:
         if not self.ignore:
             return chosen
         return replace(chosen, dialect=chosen.dialect.leaving_out(self.ignore))
+
+    def machine_of(self, text: ProgramText) -> MachineConfig:
+        """Return the machine for a program: the one that was named, else a lathe where the dialect is one of lathes.
+
+        Raises:
+            UsageError: no such machine, dialect or code.
+        """
+        lathe = self.machine is None and self.dialect_of(text).dialect.diameter_axes
+        return load_machine(_LATHE if lathe else self.machine)
 
     def root_of(self, program: Program) -> Path:
         """Return the folder with the files of the control.

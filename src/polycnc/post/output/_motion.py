@@ -11,7 +11,7 @@ import numpy.typing as npt
 
 from polycnc.errors import ProgramError
 from polycnc.post.macros._compile import START_WORDS
-from polycnc.post.output._arc_center import written_center
+from polycnc.post.output._arc_center import WrittenArc, may_be_written
 from polycnc.post.output._kinematics import Angles, Kinematics
 from polycnc.post.output._output import Output
 from polycnc.post.output._rotary import table_angles, tilt_hint
@@ -25,6 +25,7 @@ _TILTED = 1e-6
 _FLAT_MM = 1e-7
 _LARGE_TURN_DEG = 90.0
 _OFF_PLANE_MM = 1e-3
+_CHORD_UNITS = 0.4  # of the last decimal: lines that lie nearer to an arc are lost in rounding
 _FEED_OF_AXES = (
     "the feed of moves that turn the tool axis is that of the machine's axes, not of the tip (inverse_time)"
 )
@@ -62,6 +63,8 @@ class Motion:
         self._has_feed_mode = output.control.names("FEEDMODE")
         self._needs = {macro: output.control.has(macro) for macro in ("RAPID", "LINEAR", "THREAD")}
         # A lathe's program has no Y: what the tool path says there would be lost.
+        named = [word for word in "IJKR" if output.control.uses("ARC_CW", word)]
+        self._by_radius = named == ["R"]
         self._flat = not any(output.control.uses(macro, "Y") for macro in ("RAPID", "LINEAR"))
         self.surface_speed = False
         self._thread: Thread | None = None
@@ -405,34 +408,28 @@ class Motion:
         self.feed_mm = before
 
     def _stays_arc(self, arc: Arc) -> bool:
-        p = self._parameters
-        found = arc.plane()
-        return (
-            p.arcs == "arcs"
-            and not self.turned_on_machine
-            and found is not None
-            and found[0] in p.arc_planes
-            and p.arc_min_radius_mm <= arc.radius <= p.arc_max_radius_mm
-            and (p.helix == "arcs" or abs(arc.rise) <= _FLAT_MM)
-            and self._output.control.has("ARC_CW")
-            and self._output.control.has("ARC_CCW")
-        )
+        has = self._output.control.has
+        allowed = not self.turned_on_machine and may_be_written(arc, self._parameters)
+        return allowed and has("ARC_CW") and has("ARC_CCW")
 
     def _chords(self, line: int, arc: Arc) -> None:
-        for point in arc.chords(self._parameters.tolerance_mm):
+        finest = _CHORD_UNITS * 10.0**-self._parameters.decimals / self._scale
+        for point in arc.chords(max(self._parameters.tolerance_mm, finest)):
             self.straight(line, point, None, False)
 
     def _arc(self, line: int, arc: Arc) -> None:
-        """Write one arc of up to a whole turn; one so flat that it is a line within the tolerance as a line."""
+        """Write one arc of up to a whole turn; as lines if it is one within the tolerance, or if no centre fits."""
         found = arc.plane()
         assert found is not None
-        if arc.height <= self._parameters.tolerance_mm:
-            self._chords(line, arc)
-            return
         plane, clockwise = found
         scale, decimals = self._scale, self._parameters.decimals
+        center = None
+        if arc.height > self._parameters.tolerance_mm:
+            center = WrittenArc(arc, plane, clockwise, scale, decimals).center(self._by_radius)
+        if center is None:
+            self._chords(line, arc)
+            return
         start = [round(value * scale, decimals) for value in arc.start]
-        center = written_center(arc, plane, scale, decimals)
         absolute = self._parameters.arc_center == "absolute"
         i, j, k = center if absolute else (c - s for c, s in zip(center, start, strict=True))
         normal_word = {17: "K", 18: "J", 19: "I"}[plane]

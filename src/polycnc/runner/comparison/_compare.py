@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from polycnc.errors import UsageError
-from polycnc.machine import MachineConfig, load_machine
+from polycnc.machine import MachineConfig
 from polycnc.nc import BlockRecords, Dialect, ProgramText, dialect_for
 from polycnc.runner._blocks import execution_by_lines
 from polycnc.runner._execution import Progress
@@ -268,7 +268,7 @@ def _taken(
             )
         return _of_trace(side.trace, side.program, side)
     text = program_text(side)
-    config = load_machine(machine)
+    config = RunSettings(machine, dialect).machine_of(text)
     units = tuple(axis.unit for axis in config.axes)
     collector = PathCollector(config.axis_names, units)
     tracks = TrackCollector(units)

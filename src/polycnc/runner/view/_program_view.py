@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from pathlib import Path
 
-from polycnc.machine import MachineConfig, load_machine
+from polycnc.machine import MachineConfig
 from polycnc.nc import Dialect, ProgramText
 from polycnc.runner._execution import Progress
 from polycnc.runner._run import run_program
@@ -36,11 +36,11 @@ def view_program(
         UsageError: no such file, machine or dialect.
     """
     text = program_text(program)
-    config = load_machine(machine)
-    collector = TrackCollector(tuple(axis.unit for axis in config.axes), laser=config)
     settings = RunSettings(
-        config, dialect, skip_levels=frozenset(skip_levels), stock=stock, resolution_mm=resolution_mm
+        machine, dialect, skip_levels=frozenset(skip_levels), stock=stock, resolution_mm=resolution_mm
     )
+    config = settings.machine_of(text)
+    collector = TrackCollector(tuple(axis.unit for axis in config.axes), laser=config)
     result = run_program(text, settings, check=False, tagged_rows=collector.add, progress=progress)
     execution = collector.execution()
     axes = tuple((axis.name, axis.unit) for axis in config.axes)

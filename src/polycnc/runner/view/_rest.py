@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from polycnc.machine import load_machine
 from polycnc.nc import ProgramText
 from polycnc.runner._outcome import RunOutcome
 from polycnc.runner._program_control import has_control
@@ -22,7 +21,7 @@ def rest_of(text: ProgramText, settings: RunSettings, result: RunOutcome) -> Tra
     """
     if result.ok or has_control(settings.dialect_of(text).dialect):
         return None
-    config = load_machine(settings.machine)
+    config = settings.machine_of(text)
     collector = TrackCollector(tuple(axis.unit for axis in config.axes), most=_MOST_POINTS)
     again = replace(settings, past_errors=True, stock=None, resolution_mm=None)
     whole = run_program(text, again, check=False, tagged_rows=collector.add)
