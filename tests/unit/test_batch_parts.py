@@ -59,6 +59,24 @@ def test_a_report_says_what_the_run_says() -> None:
     assert report_in(answer_of(report).text) == report
 
 
+TURNED = "O0001\nT0101\nG97 S500 M3\nG0 X40. Z2.\nG1 Z-20. F0.2\nG0 X60. Z10.\nM30\n"
+
+
+@pytest.mark.parametrize("named", [None, "mill3"])
+@pytest.mark.parametrize("text", [TURNED, "G0 X5 Y1\nG1 X17 F600\n"])
+def test_without_a_machine_a_program_runs_where_run_has_it(text: str, named: str | None) -> None:
+    (setup,) = setups_of(named, None, {"tolerance": (0.05,)}, check_only=False, detail=True)
+    report = report_of(_job_of(text), setup)
+    run = polycnc.run(ProgramText.from_text(text, "a.nc"), named, check=False)
+    assert (report.machine, report.time_s, report.status) == (
+        run.machine,
+        run.time_s,
+        "ok" if run.ok else "error",
+    )
+    assert report.tolerance_mm == 0.05
+    assert blank_report(_job_of(text), setup, "lost").machine == run.machine
+
+
 def test_of_very_many_errors_the_first_are_told() -> None:
     setup = Setup(MILL, check_only=True)
     most = report_of(_job_of("G1 Q\n" * 50), setup)

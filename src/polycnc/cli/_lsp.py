@@ -14,5 +14,8 @@ def lsp_command(machine: options.Machine = None, dialect: options.Dialect = None
     from polycnc.machine import load_machine
     from polycnc.nc import load_dialect
 
-    if not serve_editor(load_machine(machine), None if dialect is None else load_dialect(dialect)):
+    served = serve_editor(
+        None if machine is None else load_machine(machine), None if dialect is None else load_dialect(dialect)
+    )
+    if not served:
         sys.exit(PROGRAM)

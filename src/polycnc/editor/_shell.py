@@ -31,9 +31,9 @@ from polycnc.editor._rename import CONTROL, STAND_ALONE, check_renaming, renamed
 from polycnc.editor._stand_alone import sap_completions, sap_hover, sap_names, sap_outline
 from polycnc.editor._tables import control_names, key_completions, key_hover, table_outline
 from polycnc.errors import UsageError
-from polycnc.machine import MachineConfig, load_machine
+from polycnc.machine import MachineConfig
 from polycnc.nc import Dialect, ModalWords, ProgramText, choose_dialect
-from polycnc.runner import Survey, holds_before, survey
+from polycnc.runner import Survey, holds_before, machine_for, survey
 
 _NOTHING = Document("")
 
@@ -45,7 +45,6 @@ class _Editor:
         self._server = server
         self._machine = machine
         self._dialect = dialect
-        self._config = load_machine(machine)
         self._newest, self._answers, self._times = Newest(), Newest(), Newest()
         self._checked: dict[str, Checked] = {}
         self._surveys: dict[str, tuple[str, Survey | None]] = {}
@@ -112,10 +111,11 @@ class _Editor:
             return None
         before = await self._answers.run(uri, lambda _: self._holds_before(uri, document, line, dialect))
         text, span = code or ("", at[1] if at else Span(line, character, character + 1))
+        config = machine_for(self._machine, dialect)
         if not text and at and before:
-            meaning = word_meaning(at[0], before[0], self._config, dialect)
+            meaning = word_meaning(at[0], before[0], config, dialect)
             text = f"**{at[0]}** ({dialect.name}): {meaning}" if meaning else ""
-        parts = [text, held(*before, self._config, dialect) if before else ""]
+        parts = [text, held(*before, config, dialect) if before else ""]
         known = self._surveys.get(uri)
         if known is not None and known[0] == document.text and known[1] is not None:
             time = known[1].lines.get(line + 1)
@@ -274,7 +274,11 @@ class _Editor:
                 return None
             with suppress(Overtaken, TooLong):
                 return survey(
-                    program, self._config, dialect, root=_root(name), progress=within(LONGEST_S, go_on)
+                    program,
+                    machine_for(self._machine, dialect),
+                    dialect,
+                    root=_root(name),
+                    progress=within(LONGEST_S, go_on),
                 )
             return None
 
@@ -292,7 +296,9 @@ class _Editor:
         program = ProgramText.from_text(document.text, _name(uri))
         if program.endless_line() is not None:
             return None
-        return holds_before(program, line + 1, self._config, dialect, root=_root(program.name))
+        return holds_before(
+            program, line + 1, machine_for(self._machine, dialect), dialect, root=_root(program.name)
+        )
 
     def _publish(self, uri: str, document: Document, found: list[Finding]) -> None:
         if self._document(uri) is document:

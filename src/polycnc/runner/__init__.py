@@ -15,7 +15,7 @@ from polycnc.runner._remarks import Remark
 from polycnc.runner._result import RunResult, TracedResult
 from polycnc.runner._run import run, run_program
 from polycnc.runner._run_events import RunEvent, RunEvents
-from polycnc.runner._settings import RunSettings, program_text
+from polycnc.runner._settings import RunSettings, machine_for, program_text
 from polycnc.runner._trace import TraceWriter, read_trace, trace_columns
 from polycnc.runner._trace_formats import TRACE_FORMATS
 from polycnc.runner._wall import WallClock
@@ -79,6 +79,7 @@ __all__ = [
     "holds_before",
     "inspect",
     "json_schema",
+    "machine_for",
     "machine_from",
     "open_in_browser",
     "plot",

@@ -19,7 +19,17 @@ if TYPE_CHECKING:
 
 Program = str | Path | ProgramText
 
-_LATHE = "lathe2"
+LATHE = "lathe2"
+"""The machine for programs of lathes, where none is named."""
+
+
+def machine_for(machine: str | Path | MachineConfig | None, dialect: Dialect) -> MachineConfig:
+    """Return the machine that was named, else the one for programs of a dialect: a lathe for those of lathes.
+
+    Raises:
+        UsageError: no such machine.
+    """
+    return load_machine(LATHE if machine is None and dialect.diameter_axes else machine)
 
 
 @dataclass(frozen=True, slots=True)
@@ -92,13 +102,14 @@ class RunSettings:
         return replace(chosen, dialect=chosen.dialect.leaving_out(self.ignore))
 
     def machine_of(self, text: ProgramText) -> MachineConfig:
-        """Return the machine for a program: the one that was named, else a lathe where the dialect is one of lathes.
+        """Return the machine for a program, see `machine_for`.
 
         Raises:
             UsageError: no such machine, dialect or code.
         """
-        lathe = self.machine is None and self.dialect_of(text).dialect.diameter_axes
-        return load_machine(_LATHE if lathe else self.machine)
+        if self.machine is not None:
+            return load_machine(self.machine)
+        return machine_for(None, self.dialect_of(text).dialect)
 
     def root_of(self, program: Program) -> Path:
         """Return the folder with the files of the control.

@@ -280,7 +280,7 @@ def _plain(setup: Setup) -> tuple[object, ...]:
     dialect = setup.dialect.model_dump_json() if isinstance(setup.dialect, Dialect) else setup.dialect
     stock = setup.stock, setup.resolution_mm, setup.fixtures
     return (
-        setup.machine.model_dump_json(),
+        *("" if each is None else each.model_dump_json() for each in (setup.machine, setup.lathe)),
         dialect,
         setup.override_percent,
         setup.check_only,

@@ -14,9 +14,9 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from polycnc.errors import PolycncError
+from polycnc.errors import PolycncError, UsageError
 from polycnc.machine import MachineConfig
-from polycnc.nc import Dialect, ProgramText
+from polycnc.nc import Dialect, ProgramText, choose_dialect
 from polycnc.runner._blocks import Execution
 from polycnc.runner._check import check
 from polycnc.runner._result import RunResult
@@ -35,7 +35,7 @@ class Setup:
     """On what programs are run, and how: one for each combination of a sweep.
 
     With `detail` a report has the slowest blocks and a picture of the path, for which every cycle is looked at. With
-    `stock` (no file) the tools cut it beside `fixtures`.
+    `stock` (no file) the tools cut it beside `fixtures`. Programs of lathes run on `lathe`, where no machine was named.
     """
 
     machine: MachineConfig
@@ -46,6 +46,17 @@ class Setup:
     stock: str | None = None
     resolution_mm: float | None = None
     fixtures: tuple[str, ...] = ()
+    lathe: MachineConfig | None = None
+
+    def of(self, job: Job) -> Setup:
+        """Return the setup with the machine for a program."""
+        if self.lathe is None:
+            return self
+        try:
+            dialect = choose_dialect(ProgramText(job.name, job.content), self.dialect).dialect
+        except UsageError:  # the program cannot be read, as its report says
+            return self
+        return replace(self, machine=self.lathe if dialect.diameter_axes else self.machine, lathe=None)
 
 
 @dataclass(frozen=True, slots=True)
@@ -137,6 +148,7 @@ def report_in(text: str) -> ProgramReport:
 
 def blank_report(job: Job, setup: Setup, status: str, *errors: str) -> ProgramReport:
     """Return the report of a program that gave no result."""
+    setup = setup.of(job)
     tolerance = setup.machine.path.path_tolerance_mm
     return ProgramReport(
         job.name,
@@ -168,7 +180,7 @@ def report_of(job: Job, setup: Setup) -> ProgramReport:
 def _report(job: Job, setup: Setup, root: Path | None) -> ProgramReport:
     from polycnc.stock import NoStockError
 
-    text = ProgramText(job.name, job.content)
+    text, setup = ProgramText(job.name, job.content), setup.of(job)
     report = blank_report(job, setup, "ok")
     if setup.check_only:
         found = check(text, setup.machine, setup.dialect, root=root)

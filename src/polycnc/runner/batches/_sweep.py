@@ -10,7 +10,7 @@ from pathlib import Path
 from polycnc.errors import UsageError
 from polycnc.machine import MachineConfig, load_machine
 from polycnc.nc import Dialect, load_dialect
-from polycnc.runner._settings import RunSettings
+from polycnc.runner._settings import LATHE, RunSettings
 from polycnc.runner.batches._job import Setup
 
 SWEEPS = ("override", "machine", "tolerance")
@@ -84,6 +84,7 @@ def setups_of(
         raise UsageError("a machine and a sweep over machines", hint="Give one of them.")
     read = dialect if dialect is None or isinstance(dialect, Dialect) else load_dialect(dialect)
     machines = [load_machine(each) for each in sweep.get("machine", (machine,))]  # type: ignore[arg-type]
+    lathe = load_machine(LATHE) if machine is None and "machine" not in sweep else None
     found = []
     for config, tolerance, override in product(
         machines, sweep.get("tolerance", (None,)), sweep.get("override", (100.0,))
@@ -98,6 +99,7 @@ def setups_of(
                 stock=stock,
                 resolution_mm=resolution_mm,
                 fixtures=tuple(fixtures),
+                lathe=None if lathe is None else _with_tolerance(lathe, tolerance),
             )
         )
     return found
