@@ -106,6 +106,17 @@ class Tool:
         """Return the outline of the holder, which must not touch anything."""
         return _steps_profile(self.holder)
 
+    def above_flutes_profile(self, beside_mm: float) -> Profile:
+        """Return the outline of what is above the flutes, wider by `beside_mm`; none where it is free or not known.
+
+        A mill with a neck that is narrower than its flutes does not rub; chips do not leave holes deeper than those of a
+        drill.
+        """
+        necked = bool(self.shank) and self.shank[0][1] < self.radius_mm and self.kind is not ToolKind.DRILL
+        if necked or math.isinf(self.flute_mm):
+            return _NO_PROFILE
+        return _steps_profile(((self.flute_mm, self.radius_mm + beside_mm),))
+
     def shank_profile(self) -> Profile:
         """Return the outline of the shank, which must not touch anything."""
         return _steps_profile(self.shank)
