@@ -109,8 +109,7 @@ class Tool:
     def above_flutes_profile(self, beside_mm: float) -> Profile:
         """Return the outline of what is above the flutes, wider by `beside_mm`; none where it is free or not known.
 
-        A mill with a neck that is narrower than its flutes does not rub; chips do not leave holes deeper than those of a
-        drill.
+        A mill with a neck that is narrower than its flutes does not rub, but the flutes of a drill carry its chips.
         """
         necked = bool(self.shank) and self.shank[0][1] < self.radius_mm and self.kind is not ToolKind.DRILL
         if necked or math.isinf(self.flute_mm):
