@@ -84,13 +84,13 @@ def run_command(
     from polycnc import runner
     from polycnc.machine import load_machine
 
-    check_stock_file(save_stock, stock)
     outputs = _Outputs(trace, plot, screen, save_stock, save_parameters)
     body = options.body_of(stock, resolution, fixture, target, tolerance)
-    read = (stock if stock != "auto" else None, target, *body["fixtures"])
-    outputs.check(programs, (*programs, machine, dialect, keys, *read))
-    texts = [read_program(program) for program in programs]
     config = load_machine(machine)
+    cut = stock if stock is not None or config.stock is None else config.stock.form
+    check_stock_file(save_stock, cut)
+    outputs.check(programs, (*programs, machine, dialect, keys, cut, target, *body["fixtures"]))
+    texts = [read_program(program) for program in programs]
     _say_if_ideal(config, servo)
     settings = runner.RunSettings(
         config,
