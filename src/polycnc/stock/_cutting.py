@@ -13,7 +13,7 @@ from polycnc.stock._rows import Rows
 from polycnc.stock._stock import Stock
 from polycnc.stock._sweep import AT_X, AT_Y, DEPTH_MM, FIGURES, VOLUME_MM3, sweep
 from polycnc.stock._target import Target
-from polycnc.stock._tool import Tool
+from polycnc.stock._tool import Tool, ToolKind
 from polycnc.stock._ways import Tally, Ways, WaysOfRows, runs
 
 Floats = npt.NDArray[np.float64]
@@ -47,7 +47,7 @@ class _Outlines:
     def of(cls, tool: Tool, rim_mm: float) -> _Outlines:
         cutting, shank, holder = (
             outline.within(max(outline.radius_mm - rim_mm, 0.5 * outline.radius_mm)).rows
-            for outline in (tool.cutting_profile(), tool.shank_profile(), tool.holder_profile())
+            for outline in (tool.core_profile(), tool.shank_profile(), tool.holder_profile())
         )
         rubs = tool.above_flutes_profile(rim_mm / RIM_SHARE).rows
         return cls(tool.cutting_profile().rows, cutting, shank, holder, rubs, cutting[:0])
@@ -141,12 +141,14 @@ class Cutting:
             sweep(grid, ways.places, none, outlines.core, met, met)
             self._note(ContactKind.RAPID, ways, met, least)
         cut, touched, shank = self._figures(ways), self._figures(ways), self._figures(ways)
-        sweep(grid, ways.places, outlines.cutter, outlines.holder, cut, touched)
+        tool = self._tools[ways.number]
+        edge_is_free = ways.rapid and tool.kind is ToolKind.BORING
+        cutter = outlines.core if edge_is_free else outlines.cutter
+        sweep(grid, ways.places, cutter, outlines.holder, cut, touched)
         sweep(grid, ways.places, none, outlines.shank, shank, shank)
         self._note(ContactKind.HOLDER, ways, touched, least)
         self._note(ContactKind.SHANK, ways, shank, least)
         self.tally.count(ways, cut[:, VOLUME_MM3])
-        tool = self._tools[ways.number]
         self._note(ContactKind.FLUTES, ways, cut, tool.flute_mm)
         if len(outlines.above_flutes):
             self._note_walls(ways, cut, outlines, tool.flute_mm)
