@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from itertools import pairwise
 from typing import Any
 
 import numpy as np
 import pytest
 
-from polycnc.stock import Box, Cutting, Rows, Stock, Tool, ToolKind
+from polycnc import runner
+from polycnc.stock import Box, Cutting, Rows, Stock, Tool, ToolKind, tool_of_remark
 
 manifold3d = pytest.importorskip("manifold3d")
 
@@ -86,6 +88,49 @@ def compare(number: int) -> float:
 @pytest.mark.parametrize("number", range(12))
 def test_volumes_of_random_programs(number: int) -> None:
     assert compare(number) < 1.5e-3
+
+
+# A plane, the block that cuts in it from X20 Y15 Z-3, and where that leads after a share of its way.
+ARCS: dict[str, Callable[[float], tuple[float, float, float]]] = {
+    "G17 G3 X20 Y15 Z-6.3 I7 J0": lambda u: (
+        27.0 - 7.0 * math.cos(2.0 * math.pi * u),
+        15.0 - 7.0 * math.sin(2.0 * math.pi * u),
+        -3.0 - 3.3 * u,
+    ),
+    "G18 G3 X32 Z-3 I6 K0": lambda u: (
+        26.0 - 6.0 * math.cos(math.pi * u),
+        15.0,
+        -3.0 + 6.0 * math.sin(math.pi * u),
+    ),
+    "G18 G2 X32 Z-3 I6 K0": lambda u: (
+        26.0 - 6.0 * math.cos(math.pi * u),
+        15.0,
+        -3.0 - 6.0 * math.sin(math.pi * u),
+    ),
+    "G19 G2 Y25 Z-3 J5 K0": lambda u: (
+        20.0,
+        20.0 - 5.0 * math.cos(math.pi * u),
+        -3.0 + 5.0 * math.sin(math.pi * u),
+    ),
+    "G68 X20 Y15 R33\nG1 X36": lambda u: (
+        20.0 + 16.0 * u * math.cos(math.radians(33.0)),
+        15.0 + 16.0 * u * math.sin(math.radians(33.0)),
+        -3.0,
+    ),
+}
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("arc", ARCS)
+@pytest.mark.parametrize("remark", ["T4 D=7. CR=3.5 - ball end mill", "T4 D=6. CR=0. - flat end mill"])
+def test_volumes_of_arcs_helices_and_rotated_cuts(arc: str, remark: str) -> None:
+    text = f"({remark})\nG0 X20 Y15 Z9\nT4 M6\nS900 M3\nG1 Z-3 F300\n{arc}\nM30\n"
+    box = ",".join(f"{each:g}" for each in (*LOW, *HIGH))
+    result = runner.run(text, None, "fanuc", stock=f"box={box}", resolution_mm=CELL_MM)
+    tool = tool_of_remark(remark)
+    assert tool is not None
+    places = [np.array((20.0, 15.0, 9.0)), *(np.array(ARCS[arc](u)) for u in np.linspace(0.0, 1.0, 61))]
+    assert result.removed_mm3 == pytest.approx(exact_mm3(tool, places), rel=3e-3)
 
 
 @pytest.mark.long

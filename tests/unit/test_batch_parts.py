@@ -21,7 +21,7 @@ import pytest
 
 import polycnc
 from polycnc.errors import UsageError
-from polycnc.machine import MachineConfig
+from polycnc.machine import MachineConfig, StockConfig
 from polycnc.nc import ProgramText
 from polycnc.runner import Trace, batches
 from polycnc.runner._blocks import execution_by_lines
@@ -589,14 +589,19 @@ def test_a_collision_is_an_error_of_its_program_and_what_cuts_nothing_is_none() 
     wrong = report_of(_job_of(text.replace("G1 X25 F900", "G0 X25")), setup)
     assert wrong.status == "error"
     assert "rapid through stock, 3.000 mm deep" in wrong.errors[0]
-    nothing = report_of(_job_of("G0 X3\nM30\n"), replace(setup, stock="auto"))
-    assert (nothing.status, nothing.removed_mm3) == ("ok", None)
-    assert nothing.messages[-1] == "the program cuts nothing: no stock can be told"
+    of_machine = Setup(MILL.model_copy(update={"stock": StockConfig(form="auto")}), "fanuc")
+    for without in (replace(setup, stock="auto"), of_machine):
+        nothing = report_of(_job_of("G0 X3\nM30\n"), without)
+        assert (nothing.status, nothing.removed_mm3) == ("ok", None)
+        assert nothing.messages[-1] == "the program cuts nothing: no stock can be told"
 
 
 def test_a_batch_cuts_no_files() -> None:
     for options in ({"stock": "part.stl"}, {"stock": "auto", "fixtures": ["vice.stl"]}):
         with pytest.raises(UsageError, match="for a batch"):
             setups_of(None, None, {}, check_only=False, detail=False, **options)
+    machine = MILL.model_copy(update={"stock": StockConfig(form="part.stl")})
+    with pytest.raises(UsageError, match="for a batch"):
+        setups_of(machine, None, {}, check_only=False, detail=False)
     with pytest.raises(UsageError, match="no stock"):
         setups_of(None, None, {}, check_only=False, detail=False, stock="ball")

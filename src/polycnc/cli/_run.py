@@ -31,7 +31,9 @@ class _Outputs:
     stock: Path | None
     parameters: Path | None
 
-    def check(self, programs: Sequence[Path], inputs: Iterable[str | Path | None]) -> None:
+    def check(
+        self, programs: Sequence[Path], inputs: Iterable[str | Path | None], config: MachineConfig
+    ) -> None:
         """Refuse files of several programs, and those that are read or written twice."""
         from polycnc.outputs import keep_apart, keep_inputs
 
@@ -42,7 +44,8 @@ class _Outputs:
             ("stock", self.stock),
             ("a file of parameters", self.parameters),
         )
-        read = tuple(inputs)
+        of_machine = (each.form for each in (config.stock, *config.fixtures) if each is not None)
+        read = (*inputs, *of_machine)
         for what, output in outputs:
             if output is not None and len(programs) > 1:
                 raise UsageError(f"{what} of {len(programs)} programs", hint="Run them one by one.")
@@ -84,13 +87,13 @@ def run_command(
     from polycnc import runner
     from polycnc.machine import load_machine
 
-    check_stock_file(save_stock, stock)
     outputs = _Outputs(trace, plot, screen, save_stock, save_parameters)
     body = options.body_of(stock, resolution, fixture, target, tolerance)
-    read = (stock if stock != "auto" else None, target, *body["fixtures"])
-    outputs.check(programs, (*programs, machine, dialect, keys, *read))
+    named = load_machine(machine)
+    cut = stock if stock is not None or named.stock is None else named.stock.form
+    check_stock_file(save_stock, cut)
+    outputs.check(programs, (*programs, machine, dialect, keys, stock, target, *body["fixtures"]), named)
     texts = [read_program(program) for program in programs]
-    load_machine(machine)
     settings = runner.RunSettings(
         machine,
         dialect,

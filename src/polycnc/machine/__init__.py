@@ -16,6 +16,7 @@ from polycnc.machine._config import (
 )
 from polycnc.machine._config_axis import AnyAxis, AxisConfig, LinearAxis, LinearServo, RotaryAxis, RotaryServo
 from polycnc.machine._config_probe import SurfaceConfig, first_contact
+from polycnc.machine._config_stock import FixtureConfig, StockConfig
 from polycnc.machine._config_tool import ToolConfig
 from polycnc.machine._io import IoBits, IoImage, scan_edges
 from polycnc.machine._machine import AxisState, Machine, MachineStatus, Reason
@@ -73,6 +74,7 @@ __all__ = [
     "Device",
     "Elapsed",
     "Entry",
+    "FixtureConfig",
     "Form",
     "Free",
     "History",
@@ -102,6 +104,7 @@ __all__ = [
     "SnapshotError",
     "SpindleConfig",
     "Step",
+    "StockConfig",
     "Store",
     "StoreError",
     "StrictModel",

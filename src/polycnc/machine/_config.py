@@ -18,6 +18,7 @@ from polycnc.machine._bounds import LARGEST_POSITION, LONGEST_BLOCK_S, SHORTEST_
 from polycnc.machine._config_axis import AnyAxis, NotNegative, Position, Rate, Share
 from polycnc.machine._config_probe import SurfaceConfig, surface_problems
 from polycnc.machine._config_programs import ProgramsConfig
+from polycnc.machine._config_stock import FixtureConfig, StockConfig
 from polycnc.machine._config_tool import ToolConfig
 from polycnc.machine._toml import StrictModel, problem
 from polycnc.machine._toml_locator import KeyPath
@@ -295,6 +296,10 @@ class MachineConfig(StrictModel):
     )
     surfaces: tuple[SurfaceConfig, ...] = Field(
         default=(), alias="surface", description="What a probe meets, see `[[surface]]`."
+    )
+    stock: StockConfig | None = Field(default=None, description="What programs cut, see `[stock]`.")
+    fixtures: tuple[FixtureConfig, ...] = Field(
+        default=(), alias="fixture", description="What tools must not touch, see `[[fixture]]`."
     )
 
     @model_validator(mode="after")

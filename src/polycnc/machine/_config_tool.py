@@ -28,7 +28,7 @@ class ToolConfig(StrictModel):
     wear_x_mm: float = Field(default=0.0, description="Added to the offset along X.")
     wear_z_mm: float = Field(default=0.0, description="Added to the offset along Z.")
     description: str = Field(default="", description="Any text.")
-    shape: Literal["flat", "ball", "bull", "drill", "chamfer", "taper"] | None = Field(
+    shape: Literal["flat", "ball", "bull", "drill", "chamfer", "taper", "boring"] | None = Field(
         default=None, description="What its lower end looks like, where stock is cut; absent: as remarks say."
     )
     corner_mm: NotNegative = Field(default=0.0, description="Radius at the end of a `bull` tool.")

@@ -20,6 +20,7 @@ from polycnc.machine._config import (
 from polycnc.machine._config_axis import AxisConfig, LinearAxis, LinearServo, RotaryAxis, RotaryServo
 from polycnc.machine._config_probe import SurfaceConfig
 from polycnc.machine._config_programs import ProgramsConfig
+from polycnc.machine._config_stock import FixtureConfig, StockConfig
 from polycnc.machine._config_tool import ToolConfig
 from polycnc.machine._toml import range_text
 
@@ -112,6 +113,18 @@ _SECTIONS: tuple[tuple[str, str, type[BaseModel], type[BaseModel]], ...] = (
         "What a probe meets, in machine coordinates. One table each; an axis that is not named does not count.",
         SurfaceConfig,
         SurfaceConfig,
+    ),
+    (
+        "`[stock]`",
+        "What programs cut, as if [`--stock`](../how-to/cut-stock.md) said it; that and `--resolution` overrule it.",
+        StockConfig,
+        StockConfig,
+    ),
+    (
+        "`[[fixture]]`",
+        "What holds the stock: no part of a tool may touch it where stock is cut. `--fixture` replaces all of them.",
+        FixtureConfig,
+        FixtureConfig,
     ),
     ("`[io]`", "The inputs and outputs: bits, and words of 32 bits with sign.", IoConfig, IoConfig),
     (

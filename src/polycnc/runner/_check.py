@@ -121,8 +121,9 @@ def _inspected(
 ) -> CheckReport:
     if (endless := text.endless_line()) is not None:
         return CheckReport([endless], [])
-    stock = settings.stock
-    simulated = Machine(settings.machine_of(text))
+    config = settings.machine_of(text)
+    settings = settings.with_stock_of(config)
+    simulated = Machine(config)
     control = control_for(chosen, text, simulated, settings.surroundings_of(program))
     if control is not None and control.has_statements(text):
         errors = control.check(text)
@@ -138,7 +139,7 @@ def _inspected(
     run_to_end(execution, every_cycle=False, progress=progress)
     if (empty := empty_remark(text)) is not None:
         return CheckReport(execution.channel.errors, [empty])
-    if stock is None or execution.channel.errors:
+    if settings.stock is None or execution.channel.errors:
         return CheckReport(execution.channel.errors, watch.remarks)
     return CheckReport([], [*watch.remarks, *_collisions(text, settings)])
 

@@ -124,7 +124,8 @@ def run(
     With `stock` the tools cut a body: `auto`, `box=X0,Y0,Z0,X1,Y1,Z1`, `cylinder=D,Z0,Z1` (mm, work coordinates) or an
     STL file, in cells of `resolution_mm`. `fixtures` are boxes and STL files that nothing may touch, `target` is the
     STL file of what is to come out, within `tolerance_mm` (0.02 mm if absent). What is left, what was removed and what
-    went wrong are in the result: `stock`, `removed_mm3`, `collisions`, `machined`.
+    went wrong are in the result: `stock`, `removed_mm3`, `collisions`, `machined`. A machine file may say what is cut,
+    and what holds it, where these arguments do not.
 
     Raises:
         ProgramError: with `check`, the program cannot be run as written; what ran before it is in `.result`.
@@ -173,6 +174,7 @@ def run_program(
     """
     text = program_text(program)
     config = settings.machine_of(text)
+    settings = settings.with_stock_of(config)
     collector = TraceCollector(config, settings.servo) if trace else None
     tagged = [sink for sink in (collector.add_tagged if collector else None, tagged_rows) if sink is not None]
     form, machining = settings.form(), None

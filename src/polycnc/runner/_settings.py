@@ -66,15 +66,34 @@ class RunSettings:
             raise UsageError(f"a limit of {self.loop_limit_s:g} s for loops", hint="Give seconds above 0.")
         if not self.feed_override > 0.0:
             raise UsageError(f"a feed override of {self.feed_override:g}", hint="Give more than 0, up to 2.")
-        if self.resolution_mm is not None and self.stock is None:
-            raise UsageError("a resolution without stock", hint="Say what is cut too, like stock='auto'.")
-        if self.fixtures and self.stock is None:
-            raise UsageError("fixtures without stock", hint="Say what is cut too, like stock='auto'.")
-        if self.target is not None and self.stock is None:
-            raise UsageError("a target without stock", hint="Say what is cut too, like stock='auto'.")
+        for what, given in (
+            ("a resolution", self.resolution_mm is not None),
+            ("fixtures", bool(self.fixtures)),
+            ("a target", self.target is not None),
+        ):
+            if given and self.stock is None and load_machine(self.machine).stock is None:
+                raise UsageError(f"{what} without stock", hint="Say what is cut too, like stock='auto'.")
         if self.tolerance_mm is not None and self.target is None:
             raise UsageError("a tolerance without a target", hint="Name the STL file of what is to come out.")
         self.form()
+
+    def with_stock_of(self, config: MachineConfig) -> RunSettings:
+        """Return these settings, with what the machine file says of stock where they say nothing.
+
+        Raises:
+            UsageError: the machine file says what cannot be.
+        """
+        stock, resolution_mm = self.stock, self.resolution_mm
+        if stock is None and config.stock is not None:
+            stock = config.stock.form
+            resolution_mm = resolution_mm or config.stock.resolution_mm
+        if stock is None:
+            return self
+        fixtures = self.fixtures or tuple(each.form for each in config.fixtures)
+        try:
+            return replace(self, stock=stock, resolution_mm=resolution_mm, fixtures=fixtures)
+        except UsageError as error:
+            raise UsageError(f"stock of '{config.name}': {error.what}", hint=error.hint) from None
 
     def form(self) -> Form | None:
         """Return what body is cut; None if none is.

@@ -9,7 +9,7 @@ from polycnc.errors import UsageError
 from polycnc.machine import MachineConfig, ToolConfig
 from polycnc.nc import TIPS, ProgramText
 from polycnc.runner._stock_tools import remarks_of_tools, tools_of
-from polycnc.stock import Insert, Tool, grooving_tool, iso_insert, threading_tool
+from polycnc.stock import Insert, Tool, ToolKind, grooving_tool, iso_insert, threading_tool
 
 _INSIDE = re.compile(r"\bbor(?:e|ing)\b|\binside\b|\binternal\b", re.IGNORECASE)
 _GROOVE = re.compile(r"\b(?:groov|part(?:ing)?[ -]?off|parting|cut[ -]?off)", re.IGNORECASE)
@@ -26,7 +26,9 @@ def turning_tools_of(config: MachineConfig, texts: Mapping[str, ProgramText]) ->
     Raises:
         UsageError: the machine file describes a tool that there cannot be.
     """
-    tools: dict[int, Tool | Insert] = {**tools_of(config, texts)}
+    # What a mill calls a boring bar is here a bar whose insert is not known.
+    on_axis = (each for each in tools_of(config, texts).items() if each[1].kind is not ToolKind.BORING)
+    tools: dict[int, Tool | Insert] = dict(on_axis)
     for text in texts.values():
         for number, remark in remarks_of_tools(text):
             at = config.tools.get(number, ToolConfig())

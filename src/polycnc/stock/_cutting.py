@@ -13,7 +13,7 @@ from polycnc.stock._rows import Rows
 from polycnc.stock._stock import Stock
 from polycnc.stock._sweep import AT_X, AT_Y, DEPTH_MM, FIGURES, VOLUME_MM3, sweep
 from polycnc.stock._target import Target
-from polycnc.stock._tool import Tool
+from polycnc.stock._tool import Tool, ToolKind
 from polycnc.stock._ways import Tally, Ways, WaysOfRows, runs
 
 Floats = npt.NDArray[np.float64]
@@ -31,21 +31,26 @@ IDLE_S = 3.0
 
 @dataclass(frozen=True, eq=False, slots=True)
 class _Outlines:
-    """Hold the outlines of a tool: of what cuts, the same without its rim, of what must not touch, and of nothing."""
+    """Hold the outlines of a tool: of what cuts, the same without its rim, of what must not touch, and of nothing.
+
+    `above_flutes` meets the walls of what the tool has cut, above its flutes.
+    """
 
     cutter: Floats
     core: Floats
     shank: Floats
     holder: Floats
+    above_flutes: Floats
     none: Floats
 
     @classmethod
     def of(cls, tool: Tool, rim_mm: float) -> _Outlines:
         cutting, shank, holder = (
             outline.within(max(outline.radius_mm - rim_mm, 0.5 * outline.radius_mm)).rows
-            for outline in (tool.cutting_profile(), tool.shank_profile(), tool.holder_profile())
+            for outline in (tool.core_profile(), tool.shank_profile(), tool.holder_profile())
         )
-        return cls(tool.cutting_profile().rows, cutting, shank, holder, cutting[:0])
+        rubs = tool.above_flutes_profile(rim_mm / RIM_SHARE).rows
+        return cls(tool.cutting_profile().rows, cutting, shank, holder, rubs, cutting[:0])
 
 
 class Cutting:
@@ -136,18 +141,29 @@ class Cutting:
             sweep(grid, ways.places, none, outlines.core, met, met)
             self._note(ContactKind.RAPID, ways, met, least)
         cut, touched, shank = self._figures(ways), self._figures(ways), self._figures(ways)
-        sweep(grid, ways.places, outlines.cutter, outlines.holder, cut, touched)
+        tool = self._tools[ways.number]
+        edge_is_free = ways.rapid and tool.kind is ToolKind.BORING
+        cutter = outlines.core if edge_is_free else outlines.cutter
+        sweep(grid, ways.places, cutter, outlines.holder, cut, touched)
         sweep(grid, ways.places, none, outlines.shank, shank, shank)
         self._note(ContactKind.HOLDER, ways, touched, least)
         self._note(ContactKind.SHANK, ways, shank, least)
         self.tally.count(ways, cut[:, VOLUME_MM3])
-        tool = self._tools[ways.number]
         self._note(ContactKind.FLUTES, ways, cut, tool.flute_mm)
+        if len(outlines.above_flutes):
+            self._note_walls(ways, cut, outlines, tool.flute_mm)
         if not ways.rapid:
             turns = np.sign(ways.rows.turns[ways.ends].astype(np.float64))
             self._note(ContactKind.SPINDLE, ways, cut, least, turns == 0)
             self._note(ContactKind.DIRECTION, ways, cut, least, turns == (1 if tool.left_hand else -1))
             self._note_idle(ways, cut, outlines)
+
+    def _note_walls(self, ways: Ways, cut: Floats, outlines: _Outlines, flute_mm: float) -> None:
+        """Note where a tool cuts beside walls that rise above its flutes, level by level or peck by peck."""
+        walls = self._figures(ways)
+        sweep(self.stock.grid, ways.places, outlines.none, outlines.above_flutes, walls, walls)
+        walls[walls[:, DEPTH_MM] > LEAST_DEPTH_SHARE * self.stock.cell_mm, DEPTH_MM] += flute_mm
+        self._note(ContactKind.FLUTES, ways, walls, flute_mm, cut[:, VOLUME_MM3] > 0.0)
 
     @staticmethod
     def _figures(ways: Ways) -> Floats:

@@ -12,6 +12,8 @@ from polycnc.stock._profile import Arc, Line, Profile, make_profile
 
 LARGEST_MM = 1000.0
 """Of any size of a tool."""
+_BAR_SHARE = 0.75
+"""How thick a boring bar is, as a part of what it bores."""
 _NO_PROFILE = make_profile(())
 
 
@@ -24,6 +26,7 @@ class ToolKind(StrEnum):
     DRILL = "drill"
     CHAMFER = "chamfer"
     TAPER = "taper"
+    BORING = "boring"
 
 
 @dataclass(frozen=True, slots=True)
@@ -87,7 +90,7 @@ class Tool:
         """Return the outline of what cuts."""
         radius, tip = self.radius_mm, 0.5 * self.tip_mm
         match self.kind:
-            case ToolKind.FLAT:
+            case ToolKind.FLAT | ToolKind.BORING:
                 return make_profile((Line(0.0, radius, 0.0, 0.0),))
             case ToolKind.BALL:
                 return make_profile((Arc(0.0, radius, 0.0, radius, radius),))
@@ -102,9 +105,29 @@ class Tool:
                 flat = (Line(0.0, tip, 0.0, 0.0),) if tip > 0.0 else ()
                 return make_profile((*flat, Line(tip, radius, 0.0, rise)))
 
+    def core_profile(self) -> Profile:
+        """Return the outline of what must not touch anything at rapid: of a boring bar what is beside its one edge.
+
+        Its cycles retract it off the wall with the spindle oriented, which a body of its full diameter cannot.
+        """
+        if self.kind is not ToolKind.BORING:
+            return self.cutting_profile()
+        bar = min((radius for _, radius in self.shank), default=_BAR_SHARE * self.radius_mm)
+        return make_profile((Line(0.0, min(bar, self.radius_mm), 0.0, 0.0),))
+
     def holder_profile(self) -> Profile:
         """Return the outline of the holder, which must not touch anything."""
         return _steps_profile(self.holder)
+
+    def above_flutes_profile(self, beside_mm: float) -> Profile:
+        """Return the outline of what is above the flutes, wider by `beside_mm`; none where it is free or not known.
+
+        A mill with a neck that is narrower than its flutes does not rub, but the flutes of a drill carry its chips.
+        """
+        necked = bool(self.shank) and self.shank[0][1] < self.radius_mm and self.kind is not ToolKind.DRILL
+        if necked or self.kind is ToolKind.BORING or math.isinf(self.flute_mm):
+            return _NO_PROFILE
+        return _steps_profile(((self.flute_mm, self.radius_mm + beside_mm),))
 
     def shank_profile(self) -> Profile:
         """Return the outline of the shank, which must not touch anything."""

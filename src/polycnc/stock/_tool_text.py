@@ -38,6 +38,7 @@ _KINDS = (
     (re.compile(r"drill|\btap\b|\bream", re.IGNORECASE), ToolKind.DRILL),
     (re.compile(r"taper", re.IGNORECASE), ToolKind.TAPER),
     (re.compile(r"(?:\b|end|face|slot)mill|cutter|\bflat|\bslot", re.IGNORECASE), ToolKind.FLAT),
+    (re.compile(r"\bbor(?:e|ing)[ -]?(?:bar|head|tool)s?\b", re.IGNORECASE), ToolKind.BORING),
     (re.compile(r"\bholes?\b", re.IGNORECASE), ToolKind.DRILL),
 )
 

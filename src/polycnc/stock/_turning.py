@@ -127,6 +127,7 @@ class TurningCutting:
         radii = np.linspace(0.0, tool.radius_mm, _DRILL_STEPS)
         heights = np.array([profile.height(float(r)) for r in radii])
         figures = np.zeros((len(ways.ends), FIGURES))
+        holes = figures.copy()
         for way, (begin, end) in enumerate(self._on_axis(ways.places)):
             lowest = min(begin[2], end[2])
             above = stock.z - lowest
@@ -139,11 +140,16 @@ class TurningCutting:
                 figures[way, DEPTH_MM] = float(stock.z[deep].max()) - lowest
                 figures[way, VOLUME_MM3], figures[way, AT_Y] = volume, lowest
                 stock.inner[:] = wider
+                # How far the wall of its own hole rises, whatever the pecks before have drilled.
+                wall = (stock.inner <= tool.radius_mm + stock.cell_mm) & (stock.outer > tool.radius_mm)
+                wall &= above >= 0.0
+                holes[way] = figures[way]
+                holes[way, DEPTH_MM] = float(above[wall].max(initial=0.0))
         least = LEAST_DEPTH_SHARE * stock.cell_mm
         if ways.rapid:
             self._note(ContactKind.RAPID, ways, figures, least)
         self.tally.count(ways, figures[:, VOLUME_MM3])
-        self._note(ContactKind.FLUTES, ways, figures, tool.flute_mm)
+        self._note(ContactKind.FLUTES, ways, holes, tool.flute_mm)
         if not ways.rapid:
             figures[ways.rows.turns[ways.ends] != 0.0, DEPTH_MM] = 0.0
             self._note(ContactKind.SPINDLE, ways, figures, least)

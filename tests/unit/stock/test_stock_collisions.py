@@ -73,6 +73,38 @@ def test_short_flutes_and_a_low_holder_are_found() -> None:
     ]
 
 
+DRILL = Tool(ToolKind.DRILL, 6.0, angle_deg=118.0, flute_mm=12.0)
+LEVELS = (-5.0, -10.0, -11.9, -15.0)
+
+
+@pytest.mark.parametrize(
+    ("tool", "found_in"),
+    [
+        (DRILL, [(ContactKind.FLUTES, 42, 15.0)]),
+        (replace(DRILL, shank=((12.0, 2.5),)), [(ContactKind.FLUTES, 42, 15.0)]),
+        (replace(DRILL, flute_mm=15.1), []),
+        (replace(END_MILL, holder=()), [(ContactKind.FLUTES, 42, 15.0)]),
+        (replace(END_MILL, holder=(), shank=((12.0, 2.5),)), []),  # a neck
+    ],
+)
+@pytest.mark.parametrize("across", [0.0, 8.0])
+def test_a_hole_deeper_than_the_flutes_is_found_peck_by_peck(
+    tool: Tool, found_in: list[tuple[ContactKind, int, float]], across: float
+) -> None:
+    """So are levels of a slot, each of them shallower than the flutes are long."""
+    places, blocks = [(9.1, 17.2, 4.0)], [10]
+    for number, z in enumerate(LEVELS):
+        places += [(9.1, 17.2, z), (9.1 + across, 17.2, z), (9.1 + across, 17.2, 4.0), (9.1, 17.2, 4.0)]
+        blocks += [12 + 10 * number] * 4
+    n = len(places)
+    rapid = np.array([True] + [False, False, True, True] * len(LEVELS))
+    found = cutting(tool)
+    found.add(
+        Rows(np.arange(1.0, n + 1.0), np.array(places), np.array(blocks), np.full(n, 7), rapid, np.ones(n))
+    )
+    assert [(each.kind, each.block, each.depth_mm) for each in found.contacts] == found_in
+
+
 @given(
     x=st.integers(-20, 100),
     y=st.integers(0, 140),

@@ -180,6 +180,8 @@ UNLIKE = ("probe", "thread mill", "T-slot mill", "dovetail mill", "lollipop mill
     [
         ("T1 D=10. CR=0. - ZMIN=-12. - flat end mill", Tool(ToolKind.FLAT, 10.0)),
         ("T12 D=6. CR=3. - ZMIN=-12. - ball end mill", Tool(ToolKind.BALL, 6.0)),
+        ("T9 D=20. - boring bar", Tool(ToolKind.BORING, 20.0)),
+        ("T9 boring head 32 mm", Tool(ToolKind.BORING, 32.0)),
         ("T2 D=8. CR=0.5 - bullnose end mill", Tool(ToolKind.BULL, 8.0, corner_mm=0.5)),
         ("T4 D=8.5 CR=0. TAPER=118deg - ZMIN=-20.6 - drill", Tool(ToolKind.DRILL, 8.5, angle_deg=118.0)),
         ("T5 D=9. CR=0. TAPER=45deg - chamfer mill", Tool(ToolKind.CHAMFER, 9.0, angle_deg=90.0)),

@@ -213,3 +213,38 @@ def test_a_machine_without_z_is_refused() -> None:
 def test_a_program_that_cuts_nothing_tells_no_stock() -> None:
     with pytest.raises(UsageError, match="cuts nothing"):
         machined("G0 X10\nM30\n", TOOLS, "auto")
+
+
+BORE = """(T1 D=18. - drill)
+(T2 D=20. - TOOL)
+G21 G90 G17 G94 G54
+T1 M6
+S900 M3
+G0 X20 Y20 Z20
+G81 X20 Y20 Z-30 R2 F100
+G80
+T2 M6
+S600 M3
+CYCLE
+G80
+M30
+"""
+
+
+@pytest.mark.parametrize(
+    ("tool", "cycle", "lines"),
+    [
+        ("boring bar", "G76 X20 Y20 Z-12 R2 Q0.3 F60", []),
+        ("flat end mill", "G76 X20 Y20 Z-12 R2 Q0.3 F60", [11]),
+        ("boring bar", "G86 X20 Y20 Z-12 R2 F60", []),
+        ("boring bar", "G0 X24 Z-12", [11]),  # the bar itself meets what the drill has left
+    ],
+)
+def test_a_boring_bar_retracts_off_the_wall(tool: str, cycle: str, lines: list[int]) -> None:
+    text = BORE.replace("TOOL", tool).replace("CYCLE", cycle)
+    result = runner.run(text, None, "fanuc", stock="box=0,0,-20,40,40,0", resolution_mm=0.25, check=False)
+    assert [each.line for each in result.collisions] == lines
+    if not lines:  # the bore alone, not its shift
+        assert result.machined is not None
+        bored = math.pi * (9.0**2 * 20.0 + (10.0**2 - 9.0**2) * 12.0)
+        assert result.removed_mm3 == pytest.approx(bored, rel=0.003)

@@ -196,7 +196,7 @@ def _set_speed(block: BlockContext, word: Word) -> None:
     elif speed > top:
         block.note(f"S is above the spindle's {code_text(top)} rpm: it turns at that speed")
         speed = top
-    block.after.spindle = replace(spindle, speed=speed)
+    block.after.spindle = replace(spindle, speed=speed, speed_said=True)
 
 
 def _with_words(name: str, words: Sequence[Word]) -> str:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections import deque
 from collections.abc import Sequence
 from dataclasses import replace
+from math import copysign
 
 from polycnc.kernel import GEO_WAIT_S, WAIT, free_slots
 from polycnc.machine import Machine, MachineConfig
@@ -151,7 +152,7 @@ class Prepared:
         state = self.state
         length, radius = state.length_said_again(), state.compensation_tool
         return Carried(
-            state.spindle.speed,
+            state.spindle.speed if state.spindle.speed_said else -0.0,  # equal to S0, until that is said
             float(state.spindle.direction),
             NONE,
             float(state.selected_tool),
@@ -172,7 +173,9 @@ class Prepared:
         state.selected_tool = int(carried.tool)
         if carried.radius_tool != NONE:
             state.compensation_tool = int(carried.radius_tool)
-        state.spindle = replace(state.spindle, speed=carried.speed)
+        state.spindle = replace(
+            state.spindle, speed=abs(carried.speed), speed_said=copysign(1.0, carried.speed) > 0.0
+        )
         if carried.m_code != NONE:
             state.spindle = replace(state.spindle, direction=int(carried.sense), oriented=False)
             state.m_codes = (int(carried.m_code),)

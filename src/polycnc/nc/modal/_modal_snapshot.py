@@ -14,10 +14,12 @@ class Spindle:
     """Hold what the program asked of the spindle: direction 1 clockwise, -1 counter-clockwise, 0 stopped or `oriented`.
 
     `speed` is in revolutions per minute, or in m/min with constant surface speed; then the spindle turns with `clamp`
-    revolutions per minute at the most. `coolant` are the M codes of coolant that is on.
+    revolutions per minute at the most. `speed_said` tells S0 from a program that leaves the speed to the operator.
+    `coolant` are the M codes of coolant that is on.
     """
 
     speed: float = 0.0
+    speed_said: bool = False
     direction: int = 0
     surface_speed: bool = False
     clamp: float = math.inf

@@ -284,14 +284,22 @@ class BlockRecords:
     def spindle_turns(self, tags: npt.NDArray[np.int64]) -> npt.NDArray[np.float64]:
         """Return S with the blocks of some tags, which have one context: below zero with M4, 0 where it is at rest.
 
-        A spindle that was started without S counts as 1.
+        A spindle that was started without S counts as 1, with S0 it is at rest.
         """
         context = self._contexts.get(int(tags[0]) >> CONTEXT_SHIFT)
-        if context is not None and context.speaks:
-            speed, direction = self.laser(tags)[:, :2].T
-            return np.asarray(np.maximum(speed, 1.0) * direction, np.float64)
-        spindle = None if context is None else context.modal.spindle
-        return np.full(len(tags), 0.0 if spindle is None else max(spindle.speed, 1.0) * spindle.direction)
+        if context is None:
+            return np.zeros(len(tags))
+        spindle = context.modal.spindle
+        if not context.speaks:
+            return np.full(len(tags), (spindle.speed if spindle.speed_said else 1.0) * spindle.direction)
+        speed, direction = self.laser(tags)[:, :2].T
+        if not spindle.speed_said and context.begin is not None:
+            said = self._replay(context, context.begin)
+            first = said.lines[said.speed[0][0]] if said.speed[0] else None
+            speed = (
+                np.where((tags & LINE_MASK) < first, 1.0, speed) if first is not None else np.ones(len(tags))
+            )
+        return np.asarray(speed * direction, np.float64)
 
     def source(self, tag: int) -> ProgramText | None:
         """Return the text that the block of a tag stands in."""

@@ -205,7 +205,7 @@ def _report(job: Job, setup: Setup, root: Path | None) -> ProgramReport:
     try:
         result = run_program(text, settings, check=False, tagged_rows=tagged)
     except NoStockError as error:  # that is no fault of the program
-        report = _report(job, replace(setup, stock=None, resolution_mm=None, fixtures=()), root)
+        report = _report(job, _without_stock(setup), root)
         report.messages.append(error.what)
         return report
     _fill(report, result)
@@ -214,6 +214,11 @@ def _report(job: Job, setup: Setup, root: Path | None) -> ProgramReport:
         report.slowest = _slowest(result, execution)
         report.thumbnail = thumbnail(collector.track(execution), setup.machine)
     return report
+
+
+def _without_stock(setup: Setup) -> Setup:
+    machine = setup.machine.model_copy(update={"stock": None, "fixtures": ()})
+    return replace(setup, machine=machine, stock=None, resolution_mm=None, fixtures=())
 
 
 def _fill(report: ProgramReport, result: RunResult) -> None:

@@ -71,19 +71,23 @@ def setups_of(
     Raises:
         UsageError: no such sweep, machine or dialect, a value that cannot be, or stock from a file.
     """
-    for text in (stock or "", *fixtures):
+    machines = [load_machine(each) for each in sweep.get("machine", (machine,))]  # type: ignore[arg-type]
+    on_machines = [each for config in machines for each in (config.stock, *config.fixtures) if each]
+    for text in (stock or "", *fixtures, *(each.form for each in on_machines)):
         if text.lower().endswith(".stl"):
             raise UsageError(
                 f"'{text}' for a batch", hint="Give auto, a box or a cylinder: files are for one program."
             )
-    RunSettings(stock=stock, resolution_mm=resolution_mm, fixtures=tuple(fixtures))  # refuses what cannot be
+    for config in machines:  # refuses what cannot be
+        RunSettings(config, stock=stock, resolution_mm=resolution_mm, fixtures=tuple(fixtures)).with_stock_of(
+            config
+        )
     unknown = set(sweep) - set(SWEEPS)
     if unknown:
         raise UsageError(f"'{min(unknown)}' cannot be swept", hint=f"Sweeps are: {', '.join(SWEEPS)}.")
     if machine is not None and "machine" in sweep:
         raise UsageError("a machine and a sweep over machines", hint="Give one of them.")
     read = dialect if dialect is None or isinstance(dialect, Dialect) else load_dialect(dialect)
-    machines = [load_machine(each) for each in sweep.get("machine", (machine,))]  # type: ignore[arg-type]
     lathe = load_machine(LATHE) if machine is None and "machine" not in sweep else None
     found = []
     for config, tolerance, override in product(
