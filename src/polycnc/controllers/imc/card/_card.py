@@ -177,14 +177,8 @@ class Card:
         cells = encode(instruction)
         taken = self._put(fifo, cells, cells[2])
         if taken and fifo == Fifo.SEL_IFIFO:
-            self._note_emptied(written_words(instruction))
+            _note_emptied(self.state, written_words(instruction))
         return taken
-
-    def _note_emptied(self, written: frozenset[int]) -> None:
-        """Note how far each queue that an instruction of IFIFO empties is filled now: what comes later stays."""
-        for q, count in zip(self.state.fifo, COUNTS, strict=True):
-            if count in written or _CLEAR_ALL in written:
-                q["cut"], q["since"] = q["tail"], 0
 
     def push_points(self, words: Sequence[int]) -> bool:
         """Put displacements of contour points into CFIFO, all axes of a point one after the other; False if full.
@@ -387,3 +381,10 @@ def _status(card: Card) -> CardStatus:
 def _bits(card: Card, *names: str) -> int:
     words = (card.read_words(parameter(name).address, 0, 1)[0] for name in names)
     return sum(word << 16 * k for k, word in enumerate(words))
+
+
+def _note_emptied(state: CardState, written: frozenset[int]) -> None:
+    """Note how far each queue that an instruction of IFIFO empties is filled now: what comes later stays."""
+    for q, count in zip(state.fifo, COUNTS, strict=True):
+        if count in written or _CLEAR_ALL in written:
+            q["cut"], q["since"] = q["tail"], 0
