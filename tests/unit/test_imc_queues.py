@@ -333,3 +333,50 @@ def test_every_queue_takes_the_same_instructions_and_carries_them_out_in_order(
     card.advance(1)
     assert _cells(card)[:2] == [37, 23]
     assert card.waiting_words(queue) == 0
+
+
+@pytest.mark.parametrize("before", [0, 1, 3])
+@pytest.mark.parametrize("times", [1, 2])
+@pytest.mark.parametrize(
+    ("fifo", "name"),
+    [
+        (QFIFO, "clrqfifo"),
+        (PFIFO1, "clrPFIFO1"),
+        (PFIFO2, "clrPFIFO2"),
+        (QFIFO, "clearimc"),
+        (PFIFO1, "clearimc"),
+    ],
+)
+def test_emptying_at_once_spares_what_is_sent_after_it(
+    fifo: Fifo, name: str, times: int, before: int
+) -> None:
+    card = ready_card()
+    for space in (1, 2):
+        enable_path(card, space - 1, space=space)
+    for _ in range(before):
+        send(card, fifo, ("user16b0", 7))
+    for _ in range(times):
+        send(card, IFIFO, (name, FLAG), ("user16b2", 3))
+    send(card, fifo, ("user16b1", 5))
+    card.advance(before + 2)
+    assert [card.read(cell) for cell in CELLS] == [0, 5, 3]
+    assert card.waiting_words(fifo) == 0
+
+
+def test_lines_sent_right_after_an_emptying_are_gone_along() -> None:
+    card = ready_card()
+    enable_path(card, 0)
+    line(card, 7000, speed=10.0)
+    send(card, IFIFO, ("clrPFIFO1", FLAG))
+    line(card, 1000, speed=10.0)
+    card.wait()
+    assert card.read("mcspos") == 1000
+
+
+def test_points_sent_right_after_an_emptying_stay() -> None:
+    card = ready_card()
+    assert card.push_points([1, 2, 3])
+    send(card, IFIFO, ("clrCFIFO", FLAG))
+    assert card.push_points([4, 5])
+    card.advance(1)
+    assert card.waiting_words(Fifo.SEL_CFIFO) == 2

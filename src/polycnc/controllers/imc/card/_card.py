@@ -24,6 +24,7 @@ from polycnc.controllers.imc.core._instructions import (
     WaitTime,
     encode,
     signed,
+    written_words,
 )
 from polycnc.controllers.imc.core._parameters import WORDS, address, parameter
 from polycnc.controllers.imc.core._state import (
@@ -43,6 +44,7 @@ INPUTS = 32
 OUTPUTS = 48
 _OUTPUTS = ("gout1", "gout2", "gout3")
 _KIND = "card"
+_CLEAR_ALL = address("clearimc")
 
 
 class Fifo(IntEnum):
@@ -173,7 +175,10 @@ class Card:
         if isinstance(instruction, InstallEvents) and not 1 <= len(instruction.events) <= LOAD_MOST:
             raise UsageError(f"a load of {len(instruction.events)} events", hint=f"1 to {LOAD_MOST}")
         cells = encode(instruction)
-        return self._put(fifo, cells, cells[2])
+        taken = self._put(fifo, cells, cells[2])
+        if taken and fifo == Fifo.SEL_IFIFO:
+            _note_emptied(self.state, written_words(instruction))
+        return taken
 
     def push_points(self, words: Sequence[int]) -> bool:
         """Put displacements of contour points into CFIFO, all axes of a point one after the other; False if full.
@@ -199,6 +204,7 @@ class Card:
             ring[(tail + k) & (size - 1)] = cell
         q["tail"] = tail + len(cells)
         q["words"] = waiting
+        q["since"] += words
         self.state.memory[self.axes, COUNTS[fifo]] = signed(waiting, 1)
         return True
 
@@ -375,3 +381,10 @@ def _status(card: Card) -> CardStatus:
 def _bits(card: Card, *names: str) -> int:
     words = (card.read_words(parameter(name).address, 0, 1)[0] for name in names)
     return sum(word << 16 * k for k, word in enumerate(words))
+
+
+def _note_emptied(state: CardState, written: frozenset[int]) -> None:
+    """Note how far each queue that an instruction of IFIFO empties is filled now: what comes later stays."""
+    for q, count in zip(state.fifo, COUNTS, strict=True):
+        if count in written or _CLEAR_ALL in written:
+            q["cut"], q["since"] = q["tail"], 0

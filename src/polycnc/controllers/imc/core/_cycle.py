@@ -59,7 +59,9 @@ def queues_cycle(s: CardState) -> None:
         if path and not begin_space_cycle(s, f - PFIFO1):
             continue
         if path or s.fifo[f]["head"] != s.fifo[f]["tail"] or s.fifo[f]["waiting"] != 0:
+            s.card[0]["immediate"] = f == IFIFO
             _queue_cycle(s, f)
+            s.card[0]["immediate"] = 0
         if path:
             end_space_cycle(s, f - PFIFO1)
 

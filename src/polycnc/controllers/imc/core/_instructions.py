@@ -129,6 +129,18 @@ def _framed(operation: int, cells: list[int], words: int) -> list[int]:
     return [operation, HEADER + len(cells), words, *cells]
 
 
+def written_words(instruction: Instruction) -> frozenset[int]:
+    """Return the addresses that an instruction writes when it is carried out."""
+    match instruction:
+        case Write(address=at, words=words):
+            return frozenset(range(at, at + words))
+        case WriteMany(writes=writes):
+            return frozenset().union(*map(written_words, writes))
+        case ChangeBits(address=at):
+            return frozenset((at,))
+    return frozenset()
+
+
 def words_of(instruction: Instruction) -> int:
     """Return how many 16-bit words an instruction takes in a queue."""
     return encode(instruction)[2]

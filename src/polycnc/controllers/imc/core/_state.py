@@ -51,6 +51,7 @@ CARD_ROW = np.dtype(
         ("attention", np.int64),
         ("events", np.int64),  # installed
         ("wrap_to_origin", np.int64),  # what a position does that leaves 32 bits: 1 restarts at 0, 0 wraps
+        ("immediate", np.int64),  # it is the turn of IFIFO
         ("hold", np.int64),  # what was written has to be done before IFIFO goes on
         ("delay_step", np.int64),  # what delayus counts down by in a cycle
         ("short_factor", np.int64),  # factors of events have 16 fraction bits, not 32
@@ -148,6 +149,8 @@ FIFO_ROW = np.dtype(
         ("head", np.int64),  # cells taken
         ("tail", np.int64),  # cells put
         ("words", np.int64),  # 16-bit words waiting
+        ("cut", np.int64),  # tail when an instruction that empties the queue was put into IFIFO
+        ("since", np.int64),  # 16-bit words put after that
         ("depth", np.int64),  # words that fit
         ("waiting", np.int64),
         ("address", np.int64),  # of the wait; negative: time alone

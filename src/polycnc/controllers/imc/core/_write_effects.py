@@ -5,7 +5,7 @@ from __future__ import annotations
 from polycnc.controllers.imc.core import _addresses as addr
 from polycnc.controllers.imc.core._ownership import is_pending
 from polycnc.controllers.imc.core._parameters import WORDS
-from polycnc.controllers.imc.core._state import CAPTURES, GEAR, GOAL, QUEUES, CardState
+from polycnc.controllers.imc.core._state import CAPTURES, GEAR, GOAL, IFIFO, QUEUES, CardState
 from polycnc.controllers.imc.core._words import FLAG, get32, get48, get_u16, put16, put32, put48, wrap32
 from polycnc.kernel import compiled, entry
 
@@ -33,15 +33,19 @@ def sync_source(s: CardState, i: int) -> int:
 
 @compiled
 def empty_fifo(s: CardState, f: int) -> None:
-    """Drop all that queue `f` holds, and the wait it is in."""
+    """Drop all that queue `f` holds, and the wait it is in; IFIFO, which acts at once, spares what came after it."""
     q = s.fifo[f]
-    q["head"] = q["tail"]
-    q["words"] = 0
+    if s.card[0]["immediate"] == 0:
+        q["cut"], q["since"] = q["tail"], 0
+    elif f == IFIFO or q["head"] > q["cut"]:
+        return
+    q["head"] = q["cut"]
+    q["words"] = q["since"]
     q["waiting"] = 0
     n = s.axis.shape[0]
     for k in range(QUEUES):
         if k == f:
-            put16(s.memory, n, addr.COUNTS[k], 0)
+            put16(s.memory, n, addr.COUNTS[k], q["words"])
             if 0 < k < QUEUES - 1:
                 put32(s.memory, n, addr.WAIT_TIMES[k], 0)
 
