@@ -31,9 +31,7 @@ class _Outputs:
     stock: Path | None
     parameters: Path | None
 
-    def check(
-        self, programs: Sequence[Path], inputs: Iterable[str | Path | None], config: MachineConfig
-    ) -> None:
+    def check(self, programs: Sequence[Path], inputs: Iterable[str | Path | None]) -> None:
         """Refuse files of several programs, and those that are read or written twice."""
         from polycnc.outputs import keep_apart, keep_inputs
 
@@ -44,8 +42,7 @@ class _Outputs:
             ("stock", self.stock),
             ("a file of parameters", self.parameters),
         )
-        of_machine = (each.form for each in (config.stock, *config.fixtures) if each is not None)
-        read = (*inputs, *of_machine)
+        read = tuple(inputs)
         for what, output in outputs:
             if output is not None and len(programs) > 1:
                 raise UsageError(f"{what} of {len(programs)} programs", hint="Run them one by one.")
@@ -89,10 +86,10 @@ def run_command(
 
     outputs = _Outputs(trace, plot, screen, save_stock, save_parameters)
     body = options.body_of(stock, resolution, fixture, target, tolerance)
+    outputs.check(programs, (*programs, machine, dialect, keys, stock, target, *body["fixtures"]))
     named = load_machine(machine)
-    cut = stock if stock is not None or named.stock is None else named.stock.form
-    check_stock_file(save_stock, cut)
-    outputs.check(programs, (*programs, machine, dialect, keys, stock, target, *body["fixtures"]), named)
+    check_stock_file(save_stock, stock if stock is not None or named.stock is None else named.stock.form)
+    outputs.check(programs, (each.form for each in (named.stock, *named.fixtures) if each is not None))
     texts = [read_program(program) for program in programs]
     settings = runner.RunSettings(
         machine,

@@ -185,8 +185,7 @@ def run_program(
         tagged.append(machining.add)
     record = Record(text, config, servo=settings.servo, rows=rows, tagged=tagged, progress=progress)
     simulated = Machine(config, servo=settings.servo, record_cycles=record.cycles)
-    chosen = settings.dialect_of(text)
-    dialect = chosen.dialect
+    dialect = (chosen := settings.dialect_of(text)).dialect
     control = control_for(dialect, text, simulated, settings.surroundings_of(program))
     settings.check_outputs(program, text, dialect, control)
     log = EventLog(text)
