@@ -15,7 +15,7 @@ from polycnc.servers.scenarios import load_script
 from support.often import often
 
 MOST = 1.2
-TRIES = 4
+TRIES = 8
 
 
 def _lines(line: Callable[[int], str], count: int) -> str:

@@ -102,7 +102,7 @@ def test_a_signal_ends_it_at_once_whatever_is_open(
         thread.join()
     assert served.process.returncode == status
     assert "Traceback" not in error
-    assert took_s < LATE_S + 5 * slow_s()
+    assert took_s < LATE_S + 25 * slow_s()  # other tests run beside
     if number is signal.SIGTERM:
         check_kept(memory)
 
@@ -114,7 +114,7 @@ def test_a_program_that_takes_long_to_load_is_not_waited_for(tmp_path: Path) -> 
     served = Process("--plain", "mill3", "--program", program, "--doors", "http=0,shdr=0")
     took_s, error = served.end(signal.SIGTERM)
     assert (served.process.returncode, error) == (143, "")
-    assert took_s < LATE_S + 5 * slow_s()
+    assert took_s < LATE_S + 25 * slow_s()  # other tests run beside
 
 
 def check_kept(memory: Path) -> None:
