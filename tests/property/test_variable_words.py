@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import random
 import time
+from collections.abc import Callable
 
 import pytest
 
@@ -225,11 +226,20 @@ def _seconds(lines: int) -> float:
     return time.process_time() - before
 
 
+def _assert_linear(seconds: Callable[[int], float], count: int) -> None:
+    """Hold the time of `count` and of four times as many to an exponent of 1.2; others may run beside, so try again."""
+    few = many = math.inf
+    for _ in range(8):
+        few, many = min(few, seconds(count)), min(many, seconds(4 * count))
+        if math.log(many / few, 4.0) < 1.2:
+            return
+    raise AssertionError((few, many))
+
+
 def test_the_time_of_such_lines_grows_no_faster_than_their_number() -> None:
     """Processor time of n and 4 n lines: an exponent of 1.2 at the most."""
     _seconds(2_000)  # compiled by then
-    few, many = (min(_seconds(lines) for _ in range(2)) for lines in (5_000, 20_000))
-    assert math.log(many / few, 4.0) < 1.2, (few, many)
+    _assert_linear(_seconds, 5_000)
 
 
 def test_many_programs_in_a_file_are_read_once() -> None:
@@ -248,5 +258,4 @@ def test_many_programs_in_a_file_are_read_once() -> None:
         assert channel.error is None, str(channel.error)
         return time.process_time() - before
 
-    few, many = (min(seconds(programs) for _ in range(2)) for programs in (100, 400))
-    assert math.log(many / few, 4.0) < 1.2, (few, many)
+    _assert_linear(seconds, 100)
