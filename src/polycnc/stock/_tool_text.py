@@ -2,25 +2,19 @@
 
 from __future__ import annotations
 
-import math
 import re
 from dataclasses import replace
 
 from polycnc.errors import UsageError
 from polycnc.stock._tool import Tool, ToolKind
+from polycnc.stock._tool_sizes import MM_PER_INCH, size_mm
 
-MM_PER_INCH = 25.4
 _NUMBERED = re.compile(r"\bT(?:OOL)?\s*[#:]?\s*0*(\d{1,9})\b", re.IGNORECASE)
 _NUMBER = r"(\d+(?:\.\d*)?(?![\d.]*e[-+]?\d)|\.\d+)"
 _DIAMETER = re.compile(rf"\bD(?:IA(?:METER)?)?\s*[=:]\s*{_NUMBER}", re.IGNORECASE)
 _CORNER = re.compile(rf"\bCR\s*[=:]\s*{_NUMBER}", re.IGNORECASE)
 _ANGLE = re.compile(
     rf"\b(?:TAPER|TIP|ANGLE)\s*[=:]?\s*{_NUMBER}\s*(?:DEG|°)|{_NUMBER}\s*(?:DEG\w*|°)", re.IGNORECASE
-)
-_SIZE = re.compile(
-    r"(?<![\d.,/])(?:(?P<whole>\d+)[ -]+)?(?:(?P<over>\d+)/(?P<under>\d+)|(?P<size>\d+(?:[.,]\d*)?|\.\d+))"
-    r"\s*-?(?P<unit>mm|inch|in|\")(?![a-z])",
-    re.IGNORECASE,
 )
 _UNLIKE = re.compile(
     r"\bprob(?:e|ing)\b|thread[ -]?mill|\bt[ -]slot|dove[ -]?tail|lollipop|undercut|woodruff|key(?:seat|way|slot)"
@@ -53,8 +47,8 @@ def tool_of_remark(remark: str, *, inch: bool = False) -> Tool | None:
     """Return the tool that a remark describes, None if that cannot be read.
 
     Read are `T1 D=10. CR=0. - ZMIN=-12. - flat end mill` and the like, and a size beside a word for a kind: `end mill
-    10 mm`, `1/4" end mill`, `drill 8.5 mm`. With `inch` numbers without a unit are inches. Probes, and tools that cut
-    under what is above them or by a form, are none that can be read.
+    10 mm`, `1/4" end mill`, `drill 8.5 mm`, `DRILL #4`, `1/4-20 tap`. With `inch` numbers without a unit are inches.
+    Probes, and tools that cut under what is above them or by a form, are none that can be read.
     """
     if _UNLIKE.search(remark):
         return None
@@ -93,10 +87,4 @@ def _tool(kind: ToolKind, size: float, corner: float, angle: float) -> Tool | No
 def _diameter_mm(remark: str, inch: bool) -> float | None:
     if found := _DIAMETER.search(remark):
         return float(found[1]) * (MM_PER_INCH if inch else 1.0)
-    if found := _SIZE.search(_NUMBERED.sub("", remark)):
-        if found["over"]:
-            size = float(found["whole"] or 0.0) + float(found["over"]) / (float(found["under"]) or math.inf)
-        else:
-            size = float(found["size"].replace(",", "."))
-        return size * (1.0 if found["unit"].lower() == "mm" else MM_PER_INCH)
-    return None
+    return size_mm(_NUMBERED.sub("", remark), inch=inch)

@@ -197,6 +197,26 @@ UNLIKE = ("probe", "thread mill", "T-slot mill", "dovetail mill", "lollipop mill
         ("TC: 5mm_Endmill", Tool(ToolKind.FLAT, 5.0)),
         ("End mill 10,5 mm", Tool(ToolKind.FLAT, 10.5)),
         ("T1 D=1e9 - flat end mill", None),
+        ("DRILL 9/32", Tool(ToolKind.DRILL, 25.4 * 9 / 32, angle_deg=118.0)),
+        ("9/64 clearance drill", Tool(ToolKind.DRILL, 25.4 * 9 / 64, angle_deg=118.0)),
+        ("here is the actual usage: T1 is a 1/16th end mill", Tool(ToolKind.FLAT, 25.4 / 16)),
+        ("T4 END MILL 1 1/2", Tool(ToolKind.FLAT, 25.4 * 1.5)),
+        ("DRILL #4", Tool(ToolKind.DRILL, 25.4 * 0.209, angle_deg=118.0)),
+        ("T2 - NO. 80 DRILL", Tool(ToolKind.DRILL, 25.4 * 0.0135, angle_deg=118.0)),
+        ("#81 drill", None),
+        ("#3 center drill", None),
+        ("LETTER F DRILL", Tool(ToolKind.DRILL, 25.4 * 0.257, angle_deg=118.0)),
+        ("TAP PULLEY 1/4-20", Tool(ToolKind.DRILL, 6.35, angle_deg=118.0)),
+        ("1/4-20 pulley tap", Tool(ToolKind.DRILL, 6.35, angle_deg=118.0)),
+        ("TAP M6x1", Tool(ToolKind.DRILL, 6.0, angle_deg=118.0)),
+        ("M8 tap", Tool(ToolKind.DRILL, 8.0, angle_deg=118.0)),
+        ("tapping with M3 and S500", None),
+        ("#10-32 tap", Tool(ToolKind.DRILL, 25.4 * 0.190, angle_deg=118.0)),
+        ("OP 1/2 drill holes", None),
+        ("side 1/2 end mill", None),
+        ("drill 4 holes", None),
+        ("END MILL 0.500", None),
+        ("drill on 3/4/2020", None),
         *((f"T5 D=12. CR=1. - ZMIN=-3. - {name}", None) for name in UNLIKE),
         ("Four holes of 6.6 mm through the corners", Tool(ToolKind.DRILL, 6.6, angle_deg=118.0)),
         ("Hole, end mill 8 mm on a helix", Tool(ToolKind.FLAT, 8.0)),
@@ -211,6 +231,9 @@ def test_tools_in_remarks(remark: str, tool: Tool | None) -> None:
 
 def test_remarks_in_inches() -> None:
     assert tool_of_remark("T3 D=0.5 CR=0. - flat end mill", inch=True) == Tool(ToolKind.FLAT, 12.7)
+    assert tool_of_remark("MILL 0.500", inch=True) == Tool(ToolKind.FLAT, 12.7)
+    assert tool_of_remark(".125 ball end mill", inch=True) == Tool(ToolKind.BALL, 25.4 * 0.125)
+    assert tool_of_remark("drill 0.5 deep", inch=True) is None
     assert tool_number("T03 D=0.5") == 3
     assert tool_number("Tool #12: drill") == 12
     assert tool_number("finish") is None
