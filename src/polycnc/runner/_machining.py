@@ -184,7 +184,8 @@ class MachiningCollector:
 def _cuts_nothing(tool: int) -> str:
     if tool == 0:
         return (
-            "no tool is in the spindle in some cuts: nothing is removed there; program T and M6 before them"
+            "no tool is in the spindle in some cuts: nothing is removed there; program T and M6 before them, or"
+            " describe the only tool in a comment like (end mill 6 mm)"
         )
     return (
         f"the shape of tool {tool} is not known: it cuts nothing here; a comment like (T{tool} D=10)"

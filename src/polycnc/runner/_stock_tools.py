@@ -32,7 +32,7 @@ def tools_of(config: MachineConfig, texts: Mapping[str, ProgramText]) -> dict[in
         elif each.radius_mm > 0.0:
             tools[number] = Tool(ToolKind.FLAT, 2.0 * each.radius_mm)
     for text in texts.values():
-        inch = _INCH.search(text.content) is not None
+        inch = _is_inch(text)
         for number, remark in remarks_of_tools(text):
             if (found := tool_of_remark(remark, inch=inch)) is not None:
                 tools[number] = found
@@ -42,7 +42,28 @@ def tools_of(config: MachineConfig, texts: Mapping[str, ProgramText]) -> dict[in
                 tools[number] = whole
         except UsageError as error:
             raise UsageError(f"tool {number} of '{config.name}': {error.what}", hint=error.hint) from None
+    if (only := _only_tool(tools, texts)) is not None:
+        tools[0] = only
     return tools
+
+
+def _only_tool(tools: Mapping[int, Tool], texts: Mapping[str, ProgramText]) -> Tool | None:
+    """Return the tool of programs that change none: the only one that is known, or the first that a remark tells."""
+    for text in texts.values():
+        if any(found[3] is not None for found in _REMARK_OR_TOOL.finditer(text.content)):
+            return None
+    if tools:
+        return next(iter(tools.values())) if len(tools) == 1 else None
+    told = (
+        tool_of_remark((found[1] or found[2] or b"").decode("utf-8", "replace"), inch=_is_inch(text))
+        for text in texts.values()
+        for found in _REMARK_OR_TOOL.finditer(text.content)
+    )
+    return next((tool for tool in told if tool is not None), None)
+
+
+def _is_inch(text: ProgramText) -> bool:
+    return _INCH.search(text.content) is not None
 
 
 def _whole(tool: Tool | None, config: ToolConfig) -> Tool | None:

@@ -49,6 +49,25 @@ def test_the_machine_file_says_what_is_cut(
     assert [str(each.kind) for each in result.collisions] == (kinds or [])
 
 
+@pytest.mark.parametrize(
+    ("told", "tool", "width_mm"),
+    [
+        ("(Tool: end mill 10 mm)", "", 10.0),
+        ("(6 mm end mill)\n(then a drill of 3 mm)", "", 6.0),
+        ("(T7 D=8. CR=0. - flat end mill)", "", 8.0),
+        ("", "[tools.3]\nradius_mm = 4\n", 8.0),
+        ("(T7 D=8. CR=0. - flat end mill)\n(T8 D=9. CR=0. - flat end mill)", "", 0.0),
+        ("T5 M6\n(end mill 10 mm)", "", 0.0),
+        ("(finish)", "", 0.0),
+    ],
+)
+def test_a_program_that_changes_no_tool_has_its_only_one(told: str, tool: str, width_mm: float) -> None:
+    program = "\n".join((told, *SLOT.splitlines()[2:]))
+    result = polycnc.run(program, machine(tool + STOCK), "fanuc")
+    assert result.machined is not None
+    assert result.removed_mm3 == pytest.approx(60.0 * width_mm * 4.0, rel=0.1)
+
+
 def test_a_check_looks_at_the_stock_of_the_machine_file() -> None:
     report = runner.inspect(SLOT, machine(STOCK + CLAMP), "fanuc")
     assert [(each.key, each.position.line if each.position else 0) for each in report.remarks] == [
