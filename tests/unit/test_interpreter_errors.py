@@ -44,6 +44,7 @@ NO_LANGUAGE = "dialect 'din' reads no variables, expressions or program flow (1 
     [
         # The word that is wrong, else the first that is no block number.
         ("N10 G1 X1 F100 Q5 E5", "1:19: the address 'E' is not known in dialect 'din'"),
+        ("G1 X1e-05 F100", "1:6: numbers are written without an exponent"),
         ("N10 G1 X1 X2", "1:11: 'X' is given twice in this block"),
         ("N10 N20", "1:5: 'N' is given twice in this block"),
         ("N10 G17 G18", "1:9: G17 and G18 exclude each other (group 'plane')"),

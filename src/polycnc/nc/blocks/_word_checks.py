@@ -24,6 +24,7 @@ _BELONGS_TO = {
     "F": "a dwell that has its time already, or a feed",
 }
 _WORDS_OF_THEIR_OWN = (Group.MOTION, Group.NON_MODAL, Group.DWELL, Group.ROTATION)
+_NUMBER_ENDS = frozenset(bytes((each,)) for each in b"0123456789.")
 
 
 def leave_out(block: BlockContext) -> None:
@@ -101,6 +102,10 @@ def refuse_unused(block: BlockContext) -> None:
         elif name in _BELONGS_TO:
             raise block.problem(
                 f"'{name}' has no meaning in this block", f"It belongs to {_BELONGS_TO[name]}.", word
+            )
+        elif word.letter == "E" and block.text.content[max(0, word.place - 1) : word.place] in _NUMBER_ENDS:
+            raise block.problem(
+                "numbers are written without an exponent", "Write it out, like 0.00001 for 1e-05.", word
             )
         else:
             value = code_text(word.value)
