@@ -226,3 +226,8 @@ def test_a_wrong_file_of_machines_is_refused_in_words(text: str, said: list[str]
 def test_two_kinds_of_machine_at_once_are_named() -> None:
     with pytest.raises(PolycncError, match="--fanuc and --plain at once"):
         plan_of(Flags(None, {"fanuc": "", "plain": "mill3"}))
+
+
+def test_a_machine_beside_the_fanuc_control_is_refused_with_what_to_do() -> None:
+    with pytest.raises(PolycncError, match=r"--fanuc takes no machine, but 'mill3' is given"):
+        plan_of(Flags(Path("mill3"), {"fanuc": ""}))

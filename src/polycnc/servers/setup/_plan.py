@@ -185,6 +185,11 @@ def _asked(
             )
         return *_of_flags(flags, named[0], table), flags.node_sets, None
     if named:
+        if named == ["fanuc"] and flags.file.suffix != ".toml":
+            raise UsageError(
+                f"--fanuc takes no machine, but '{flags.file}' is given",
+                hint="Leave it out: --axes says how many axes the control has, --profile which series it is.",
+            )
         raise UsageError("a file and a machine at once", hint="Put the machine into the file.")
     for key, given in (("opcua_nodesets", flags.node_sets), ("scenario", flags.scenario)):
         if given is not None:
