@@ -317,3 +317,31 @@ def test_programs_leave_nothing_at_a_board(monkeypatch: pytest.MonkeyPatch, tmp_
         assert len(board.interrupts) == before + 1
     finally:
         door.close()
+
+
+@pytest.mark.parametrize(
+    ("kind", "nobody"), [("fanuc", -9), ("imc", imclib.IMC_DEVICE_NOT_FOUND), ("apci", 31)]
+)
+def test_an_opening_call_finds_a_server_that_was_started_again(
+    kind: str, nobody: int, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    library, machinery = loaded(kind, tmp_path), Machinery(file=SYSTEM if kind == "apci" else None)
+    handle, records = ctypes.c_void_p(), (pcap.TSRP * 18)()
+
+    def opened() -> int:
+        if kind == "apci":
+            return int(library.InitMcuSystem(records))
+        if kind == "imc":
+            return int(library.IMC_Open(ctypes.byref(handle), 0, 0))
+        return int(library.cnc_allclibhndl(ctypes.byref(handle)) or library.cnc_freelibhndl(handle))
+
+    first = Door((kind, machinery))
+    at_door(monkeypatch, first)
+    assert opened() == 0
+    first.close()
+    again = Door((kind, machinery), port=int(first.place.rpartition(":")[2]))
+    try:
+        assert opened() == 0  # no call in between has told the library that the first one is gone
+    finally:
+        again.close()
+    assert opened() == nobody

@@ -245,6 +245,12 @@ static int pc_talk(pc_socket client, const unsigned char *sent, uint32_t size, u
     return pc_exchanged(client, sent, size, answer, expected) == expected;
 }
 
+static int pc_ended(pc_socket client)
+{
+    (void)client; /* the machines end with the program */
+    return 0;
+}
+
 static uint32_t pc_round(pc_socket client, unsigned char *frame, uint32_t size)
 {
     uint32_t have = pc_exchanged(client, frame, size, frame, PC_MOST), said = 0;
@@ -309,6 +315,24 @@ static uint32_t pc_answer(pc_socket socket, unsigned char *frame)
         }
     }
     return have == size ? size : 0;
+}
+
+/* Tell, without waiting, whether the other side has ended a connection; between calls it says nothing else. */
+static int pc_ended(pc_socket socket)
+{
+#ifdef _WIN32
+    fd_set read;
+    struct timeval now = {0, 0};
+    FD_ZERO(&read);
+    FD_SET(socket, &read);
+    return select(0, &read, NULL, NULL, &now) != 0;
+#else
+    struct pollfd asked;
+    asked.fd = socket;
+    asked.events = POLLIN;
+    asked.revents = 0;
+    return poll(&asked, 1, 0) > 0;
+#endif
 }
 
 /* Send bytes and receive so many; 0 if nothing more comes. */
@@ -563,6 +587,35 @@ static int pc_usual(int opens, int *code)
     return made;
 }
 
+/* Tell whether a connection is there still; one that the other side has ended is shut. */
+static int pc_live(pc_connection *on)
+{
+    int live;
+    pc_enter(&on->lock);
+    if (on->state == PC_OPEN && pc_ended(on->socket)) {
+        pc_shut(on->socket);
+        on->state = PC_LOST;
+    }
+    live = on->state == PC_OPEN;
+    pc_leave(&on->lock);
+    return live;
+}
+
+/* The connection of a call that opens, the usual one without a place: a new one if that of before has been ended. */
+static int pc_opened(const char *place, int wait_ms, int *code)
+{
+    int made, tries;
+    for (tries = 0; tries < 2; tries++) {
+        pc_enter(&pc_all);
+        pc_begin();
+        made = place ? pc_open(place, wait_ms, PC_CODE_LOST, code) : pc_usual(1, code);
+        pc_leave(&pc_all);
+        if (made < 0 || pc_live(&pc_connections[made]))
+            break;
+    }
+    return made;
+}
+
 static uint32_t pc_put(unsigned char *frame, uint32_t at, const void *from, uint32_t size)
 {
     if (at && at <= PC_MOST && size <= PC_MOST - at) {
@@ -738,8 +791,6 @@ static pc_result pc_opening(uint16_t number, int way, pc_argument *given, int co
     if (!to)
         return pc_coded(PC_CODE_NULL);
     last->to = &there;
-    pc_enter(&pc_all);
-    pc_begin();
     if (way == PC_OPENS_AT) {
         char place[280];
         uint16_t port;
@@ -751,11 +802,10 @@ static pc_result pc_opening(uint16_t number, int way, pc_argument *given, int co
         if (given[0].from && wait_s >= 0 && port && given[0].size <= 256) {
             const char *name = (const char *)given[0].from;
             snprintf(place, sizeof place, strchr(name, ':') ? "[%s]:%u" : "%s:%u", name, (unsigned)port);
-            connection = pc_open(place, wait_s ? wait_s > 600 ? 600000 : wait_s * 1000 : -1, PC_CODE_LOST, &code);
+            connection = pc_opened(place, wait_s ? wait_s > 600 ? 600000 : wait_s * 1000 : -1, &code);
         }
     } else
-        connection = pc_usual(1, &code);
-    pc_leave(&pc_all);
+        connection = pc_opened(NULL, 0, &code);
     if (connection < 0)
         return pc_coded(code);
     code = pc_exchange(&pc_connections[connection], number, given, count, &result);
@@ -781,10 +831,14 @@ static pc_result pc_call(uint16_t number, int way, pc_argument *given, int count
     if (way == PC_OPENS || way == PC_OPENS_AT)
         return pc_opening(number, way, given, count);
 #endif
-    pc_enter(&pc_all);
-    pc_begin();
-    connection = pc_usual(way == PC_OPENS, &code);
-    pc_leave(&pc_all);
+    if (way == PC_OPENS)
+        connection = pc_opened(NULL, 0, &code);
+    else {
+        pc_enter(&pc_all);
+        pc_begin();
+        connection = pc_usual(0, &code);
+        pc_leave(&pc_all);
+    }
     if (connection >= 0) {
         int counted = pc_calls_begin();
         code = pc_exchange(&pc_connections[connection], number, given, count, &result);
