@@ -40,6 +40,28 @@ SAID = {
 }
 """The arc of the gantry is half a circle around (60, 25) from (60, 0); the gears are 0.5 and -1."""
 
+FORKS = """\
+#include <stdio.h>
+#include <stdlib.h>
+#include <sys/wait.h>
+#include <unistd.h>
+#include "fwlib32.h"
+int main(void)
+{
+    unsigned short handle, other;
+    ODBST state;
+    int status, code = cnc_allclibhndl(&handle);
+    if (!fork()) {
+        alarm(20);
+        exit(cnc_statinfo(handle, &state) == EW_HANDLE && cnc_allclibhndl(&other) == EW_HSSB ? 42 : 1);
+    }
+    wait(&status);
+    printf("open %d, child %d, ", code, WIFEXITED(status) ? WEXITSTATUS(status) : -1);
+    printf("read %d\\n", cnc_statinfo(handle, &state));
+    return 0;
+}
+"""
+
 
 def _built(kind: str, folder: Path) -> Path:
     if shutil.which("gcc") is None:
@@ -49,6 +71,14 @@ def _built(kind: str, folder: Path) -> Path:
         pytest.skip("no shared library of Python, or no Python.h, here")
     write_library(library_of(kind), folder, in_process=True)
     return build_library(library_of(kind), folder, "linux", in_process=True)
+
+
+def _linked(kind: str, source: Path, folder: Path) -> Path:
+    subprocess.run(
+        ["gcc", "-std=gnu11", "-I", folder, "-o", folder / "client", source, "-L", folder,
+         f"-l{library_of(kind).name}", f"-Wl,-rpath,{folder}"], check=True,
+    )  # fmt: skip
+    return folder / "client"
 
 
 def test_functions_answer_and_write_as_the_facade_in_the_same_process(
@@ -78,12 +108,7 @@ def test_functions_answer_and_write_as_the_facade_in_the_same_process(
 def test_a_program_says_the_same_without_a_server(name: str, tmp_path: Path) -> None:
     kind = PROGRAMS[name]
     _built(kind, tmp_path)
-    program = tmp_path / "client"
-    source = EXAMPLES / "c" / f"{name}.c"
-    subprocess.run(
-        ["gcc", "-std=c11", "-I", tmp_path, "-o", program, source, "-L", tmp_path, f"-l{library_of(kind).name}",
-         f"-Wl,-rpath,{tmp_path}"], check=True,
-    )  # fmt: skip
+    program = _linked(kind, EXAMPLES / "c" / f"{name}.c", tmp_path)
     file = tmp_path / "plant.toml"
     rows = {
         "apci": f'controller = "apci"\nfile = "{SYSTEM}"',
@@ -97,6 +122,15 @@ def test_a_program_says_the_same_without_a_server(name: str, tmp_path: Path) -> 
         check=False,
     )  # fmt: skip
     assert (ran.stdout, ran.stderr) == (SAID.get(name) or facade_says(), "")
+
+
+@pytest.mark.long
+def test_the_child_of_a_fork_has_no_machines(tmp_path: Path) -> None:
+    _built("fanuc", tmp_path)
+    (tmp_path / "forks.c").write_text(FORKS)
+    program = _linked("fanuc", tmp_path / "forks.c", tmp_path)
+    ran = subprocess.run([program], env=environment(), capture_output=True, text=True, timeout=60, check=True)
+    assert ran.stdout == "open 0, child 42, read 0\n"
 
 
 def test_a_file_without_such_a_machine_has_none(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:

@@ -179,7 +179,9 @@ def test_a_lost_control_is_not_mistaken_for_the_one_that_was_opened_after_it(
         door.close()
 
 
-def test_threads_that_open_at_once_share_a_connection(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+def test_threads_that_open_at_once_share_a_connection(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
     library, door, codes = loaded("fanuc", tmp_path), Door(("fanuc", Machinery(axes=2))), list[int]()
     at_door(monkeypatch, door)
 
