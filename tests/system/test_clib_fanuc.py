@@ -9,16 +9,18 @@ import struct
 import threading
 from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
 import pytest
 
 from polycnc.controllers.fanuc import PowerMate, fwlib
 from polycnc.controllers.fanuc.clib import FWLIB
 from polycnc.servers.process import Machinery
+from support import c_meant
 from support.c_hold import Hold
-from support.c_library import Door, at_door, built, loaded
+from support.c_library import Door, at_door, loaded
 from support.focas_line import Line
-from support.fwlib_calls import AT_HOME, before, number_of, size_of
+from support.fwlib_calls import AT_HOME, HANDLE, before, number_of, size_of
 
 AXES = 4
 
@@ -30,34 +32,49 @@ def door() -> Iterator[Door]:
     made.close()
 
 
-def _hold(
-    door: Door, monkeypatch: pytest.MonkeyPatch, folder: Path, rounds: int, seed: int
-) -> tuple[Hold, PowerMate]:
-    at_door(monkeypatch, door)
-    twin = PowerMate(AXES, characters=128_000)
-    session = fwlib.Session()
-    session.attach(0, twin)
-    library = loaded("fanuc", folder)
-    handle = ctypes.c_uint16()
-    assert (
-        (library.cnc_allclibhndl(ctypes.byref(handle)), handle.value) == session.cnc_allclibhndl() == (0, 1)
-    )
-    hold = Hold(FWLIB, library, session, random.Random(seed), number_of, size_of, before)
+def _rounds(hold: Hold, devices: tuple[Any, Any], rounds: int) -> None:
     calls = [each for each in FWLIB.calls if each.function.name not in AT_HOME]
+    for each in calls:
+        hold.nulls(each)
     for number in range(rounds):
+        for device in devices:
+            device.select_mode(c_meant.FANUC_MODES[number % len(c_meant.FANUC_MODES)])
+            for program in (7, 8):
+                if program not in device.programs:
+                    device.programs.register(program, c_meant.PROGRAM.replace("7", str(program)))
         for call in hold.dice.sample(calls, len(calls)):
             hold.call(call)
-        for device in (twin, door.devices[0]):
+        for device in devices:
             device.advance(5 * (number % 60))
-    return hold, twin
+
+
+def _hold(monkeypatch: pytest.MonkeyPatch, folder: Path, rounds: int, seed: int) -> Hold:
+    library, door = loaded("fanuc", folder), Door(("fanuc", Machinery(axes=AXES)))
+    at_door(monkeypatch, door)
+    twin, session = PowerMate(AXES, characters=128_000), fwlib.Session()
+    session.attach(0, twin)
+    handle = ctypes.c_uint16()
+    hold = Hold(
+        FWLIB, library, session, random.Random(seed), number_of, size_of, before, c_meant.FANUC, twin.snapshot
+    )
+    try:
+        assert library.cnc_allclibhndl(ctypes.byref(handle)) == session.cnc_allclibhndl()[0] == 0
+        assert handle.value == HANDLE
+        _rounds(hold, (twin, door.devices[0]), rounds)
+    finally:
+        door.close()
+    for each in FWLIB.calls:
+        if each.function.name not in AT_HOME:
+            hold.lost(each)
+    return hold
 
 
 def test_every_function_answers_and_writes_as_the_facade(
-    door: Door, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
-    built("fanuc")
-    hold, _ = _hold(door, monkeypatch, tmp_path, 12, 11)
-    assert {0, 2, 3, 4, 5, -8} <= hold.codes
+    hold = _hold(monkeypatch, tmp_path, 10, 11)
+    assert {0, 2, 3, 4, 5, -8, -16} <= hold.codes
+    assert len(hold.done) > 75
 
 
 @pytest.mark.long
@@ -66,13 +83,9 @@ def test_every_function_answers_and_writes_as_the_facade(
 def test_100_000_calls_answer_and_write_as_the_facade(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path, seed: int
 ) -> None:
-    built("fanuc")
-    door = Door(("fanuc", Machinery(axes=AXES)))
-    try:
-        hold, _ = _hold(door, monkeypatch, tmp_path, 1_090, seed)
-        assert len(hold.told) > 100_000 - 92
-    finally:
-        door.close()
+    hold = _hold(monkeypatch, tmp_path, 1_090, seed)
+    assert len(hold.told) > 100_000
+    assert {each.function.name for each in FWLIB.calls} - set(hold.done) == {*AT_HOME}
 
 
 def test_every_function_is_exported_by_its_name(tmp_path: Path) -> None:

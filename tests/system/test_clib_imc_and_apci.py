@@ -16,6 +16,7 @@ from polycnc.controllers.imc import Card, imclib
 from polycnc.controllers.imc.clib import IMCNET
 from polycnc.controllers.library.clib import Call, Slot
 from polycnc.servers.process import Machinery
+from support import c_meant
 from support.c_hold import Hold
 from support.c_library import Door, Guarded, at_door, built, loaded
 
@@ -66,25 +67,40 @@ def _imc_hold(monkeypatch: pytest.MonkeyPatch, folder: Path, rounds: int, seed: 
         assert library.IMC_Open(ctypes.byref(handle), 0, 0) == 0
         assert handle.value == 1
         _, mine = session.IMC_Open(0, 0)
-        hold = Hold(IMCNET, library, session, random.Random(seed), _imc_number, _size, objects={1: mine})
+        hold = Hold(
+            IMCNET,
+            library,
+            session,
+            random.Random(seed),
+            _imc_number,
+            _size,
+            meant=c_meant.IMC,
+            state=twin.snapshot,
+            objects={1: mine},
+        )
         opening = {"IMC_Open", "IMC_OpenX", "IMC_OpenUsePassword", "IMC_Close"}
         calls = [each for each in IMCNET.calls if each.function.name not in opening]
+        for each in calls:
+            hold.nulls(each)
         for number in range(rounds):
             for call in hold.dice.sample(calls, len(calls)):
                 hold.call(call)
             for card in (twin, door.devices[0]):
                 card.advance(3 * (number % 90))
-        return hold
     finally:
         door.close()
+    for each in calls:
+        hold.lost(each)
+    return hold
 
 
 def test_every_function_of_imcnet_answers_and_writes_as_the_facade(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
     built("imc")
-    hold = _imc_hold(monkeypatch, tmp_path, 14, 3)
-    assert {0, 6, 7, 8, 9, 13} <= hold.codes
+    hold = _imc_hold(monkeypatch, tmp_path, 10, 3)
+    assert {0, 3, 6, 7, 8, 9, 13} <= hold.codes
+    assert len(hold.done) > 42
 
 
 @pytest.mark.long
@@ -92,7 +108,9 @@ def test_every_function_of_imcnet_answers_and_writes_as_the_facade(
 @pytest.mark.parametrize("seed", range(1))
 def test_100_000_calls_of_imcnet(monkeypatch: pytest.MonkeyPatch, tmp_path: Path, seed: int) -> None:
     built("imc")
-    assert len(_imc_hold(monkeypatch, tmp_path, 2_100, seed).told) > 100_000
+    hold = _imc_hold(monkeypatch, tmp_path, 2_100, seed)
+    assert len(hold.told) > 100_000
+    assert len(hold.done) == len(IMCNET.calls) - 5  # those that open, close and look for adapters
 
 
 def test_cards_are_opened_closed_lost_and_found(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
@@ -144,17 +162,22 @@ def _apci(monkeypatch: pytest.MonkeyPatch, folder: Path, seed: int) -> tuple[Hol
     at_door(monkeypatch, door)
     twin, session = Board(load_system_file(SYSTEM)), pcap.Session()
     session.attach(twin, clock=None)
-    hold = Hold(MCUG3, library, session, random.Random(seed), _apci_number, _size)
+    hold = Hold(
+        MCUG3,
+        library,
+        session,
+        random.Random(seed),
+        _apci_number,
+        _size,
+        meant=c_meant.APCI,
+        state=twin.snapshot,
+    )
     return hold, door, twin
 
 
 BESIDE = set(MCUG3.extensions)
 """What needs an extended record, and does nothing with one of the manual."""
-FILES = (
-    BESIDE
-    | set(MCUG3.interrupts)
-    | {"InitMcuSystem2", "InitMcuSystem3", "txbf", "txbf2", "rdcbcnct", "wrcbcnct", "getEnvStr"}
-)
+FILES = BESIDE | set(MCUG3.interrupts) | {"rdcbcnct", "wrcbcnct"}
 
 
 def _apci_hold(monkeypatch: pytest.MonkeyPatch, folder: Path, rounds: int, seed: int) -> Hold:
@@ -162,26 +185,33 @@ def _apci_hold(monkeypatch: pytest.MonkeyPatch, folder: Path, rounds: int, seed:
     try:
         by_name = {each.function.name: each for each in MCUG3.calls}
         assert hold.c.rdaxstb(0, 3) == hold.python.rdaxstb(0, 3) == 0
-        tsrp = (pcap.TSRP * 18)()
-        mine = pcap.tsrp_array()
+        calls = [each for name, each in by_name.items() if name not in FILES]
+        for each in calls:  # no board is there yet
+            hold.call(each)
+        tsrp, mine = (pcap.TSRP * 18)(), pcap.tsrp_array()
         assert hold.c.InitMcuSystem(tsrp) == hold.python.InitMcuSystem(mine) == 0
         assert bytes(tsrp) == b"".join(map(bytes, mine))[: ctypes.sizeof(tsrp)]
-        calls = [each for name, each in by_name.items() if name not in FILES]
+        for each in calls:
+            hold.nulls(each)
         for number in range(rounds):
             for call in hold.dice.sample(calls, len(calls)):
                 hold.call(call)
             for board in (twin, door.devices[0]):
                 board.advance(3 * (number % 90))
-        return hold
     finally:
         door.close()
+    for each in calls:
+        hold.lost(each)
+    return hold
 
 
 def test_every_function_of_mcug3_answers_and_writes_as_the_facade(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
     built("apci")
-    assert {0, 1} <= _apci_hold(monkeypatch, tmp_path, 5, 4).codes
+    hold = _apci_hold(monkeypatch, tmp_path, 3, 4)
+    assert {0, 1, -4, 31} <= hold.codes
+    assert len(hold.done) > 170
 
 
 @pytest.mark.long
@@ -189,7 +219,9 @@ def test_every_function_of_mcug3_answers_and_writes_as_the_facade(
 @pytest.mark.parametrize("seed", range(1))
 def test_100_000_calls_of_mcug3(monkeypatch: pytest.MonkeyPatch, tmp_path: Path, seed: int) -> None:
     built("apci")
-    assert len(_apci_hold(monkeypatch, tmp_path, 590, seed).told) > 100_000
+    hold = _apci_hold(monkeypatch, tmp_path, 560, seed)
+    assert len(hold.told) > 100_000
+    assert {each.function.name for each in MCUG3.calls} - set(hold.done) == FILES
 
 
 class CBCNCT(ctypes.Structure):
@@ -258,7 +290,7 @@ def test_values_without_a_place_go_through_an_extended_record(
                 shown = (after.aux, after.lp, after.dv, after.sdec)
                 assert shown == (twin.aux, twin.lp, twin.dv, twin.sdec), name
                 assert list(after.tsrp.scratch) == list(marks)
-                assert memory.front_is_whole
+                assert memory.is_kept
             read = pcap.TSRP(an=axis)
             hold.python.rdaux(read)
             assert read.aux == 2.5 + axis  # so it has been written
