@@ -131,7 +131,7 @@ def _row(slot: Slot, before: list[str], after: list[str]) -> str:
     opaque = isinstance(slot.argument.type, Opaque)
     if slot.way is Way.VALUE:
         if opaque:
-            before.append(f"    uint32_t {name}_ = (uint32_t)(uintptr_t){name};")
+            before.append(f"    uint32_t {name}_ = pc_opaque({name});")
             name += "_"
         return f"{{PC_VALUE, &{name}, {slot.width}, 0, 0}}"
     if opaque:

@@ -138,6 +138,12 @@ PC_UNUSED static uint32_t pc_least(int64_t size, uint32_t other)
     return pc_size(size) < other ? pc_size(size) : other;
 }
 
+/* A handle that is a number; 0xFFFFFFFF, which is none, of an address that has more bits. */
+PC_UNUSED static uint32_t pc_opaque(const void *handle)
+{
+    return (uint64_t)(uintptr_t)handle >> 32 ? 0xFFFFFFFFu : (uint32_t)(uintptr_t)handle;
+}
+
 /* A text with its zero; a longer one is cut by the other side. */
 PC_UNUSED static uint32_t pc_text(const char *text)
 {
