@@ -28,29 +28,31 @@ _FILL = 0xA5
 
 
 @cache
-def folder_of(kind: str) -> Path:
+def folder_of(kind: str, packing: int = 0) -> Path:
     """Return the folder of a library that is built for this computer, once; the end of the tests removes it."""
     import atexit
 
     folder = Path(mkdtemp(prefix="polycnc_clib_"))
     atexit.register(shutil.rmtree, folder, True)
-    write_library(library_of(kind), folder)
-    build_library(library_of(kind), folder, "linux")
+    library = library_of(kind).packed(packing)
+    assert library is not None
+    write_library(library, folder)
+    build_library(library, folder, "linux")
     return folder
 
 
-def built(kind: str) -> Path:
+def built(kind: str, packing: int = 0) -> Path:
     """Return the folder of a library, or skip the test where nothing builds it."""
     if shutil.which("gcc") is None:
         pytest.skip(NO_COMPILER)
-    return folder_of(kind)
+    return folder_of(kind, packing)
 
 
-def loaded(kind: str, folder: Path) -> Any:
+def loaded(kind: str, folder: Path, packing: int = 0) -> Any:
     """Load a library as a program of its own has it: with no connection yet."""
     name = library_of(kind).name
     own = folder / f"lib{name}_{len(list(folder.iterdir()))}.so"
-    shutil.copy(built(kind) / f"lib{name}.so", own)
+    shutil.copy(built(kind, packing) / f"lib{name}.so", own)
     return ctypes.CDLL(str(own))
 
 

@@ -17,10 +17,11 @@ from polycnc.controllers.fanuc import PowerMate, fwlib
 from polycnc.controllers.fanuc.clib import FWLIB
 from polycnc.servers.process import Machinery
 from support import c_meant
-from support.c_hold import Hold
+from support.c_hold import Hold, Meant
 from support.c_library import Door, at_door, loaded
 from support.focas_line import Line
 from support.fwlib_calls import AT_HOME, HANDLE, before, number_of, size_of
+from support.often import share
 
 AXES = 4
 
@@ -246,6 +247,24 @@ def _clients(rounds: int) -> None:
 
 def test_clients_that_end_in_the_middle_of_a_call_leave_nothing() -> None:
     _clients(60)
+
+
+def test_structures_of_the_other_packing_are_not_overrun(
+    door: Door, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    packed = FWLIB.packed(4)
+    assert packed is not None
+    library, handle, codes = loaded("fanuc", tmp_path, 4), ctypes.c_uint16(), set[int]()
+    at_door(monkeypatch, door)
+    assert (library.cnc_allclibhndl(ctypes.byref(handle)), handle.value) == (0, HANDLE)
+    meant = Meant(
+        {name: {each: value for each, value in row.items() if not isinstance(value, bytes)}
+         for name, row in c_meant.FANUC.rows.items()}
+    )  # fmt: skip
+    hold = Hold(packed, library, fwlib.Session(), random.Random(5), number_of, size_of, meant=meant)
+    for _ in range(share(12)):
+        codes |= {hold.harmless(each) for each in packed.calls if each.function.name not in AT_HOME}
+    assert {0, 2, 3, 4, 5, -8} <= codes
 
 
 @pytest.mark.long
