@@ -20,25 +20,8 @@ from polycnc.servers.inside import inside
 from support.c_hold import Hold
 from support.c_library import NO_COMPILER
 from support.command import environment
-from support.facade_programs import SYSTEM, facade_says
+from support.facade_programs import C_PROGRAMS, EXAMPLES
 from support.fwlib_calls import AT_HOME, HANDLE, before, number_of, size_of
-
-EXAMPLES = Path(__file__).parents[2] / "examples"
-PROGRAMS = {
-    "fanuc_macro": "fanuc",
-    "apci_jog": "apci",
-    "apci_gantry": "apci",
-    "imc_move": "imc",
-    "imc_line_shaft": "imc",
-}
-SAID = {
-    "apci_jog": "init 0, board 4, 3 axes\nat 12.500\n",
-    "apci_gantry": "init 0, 3 axes\nhomed 3 axes\nat 60.000 50.000 0.000\nerrors 0\n",
-    "imc_move": "adapters 0: 1\nopen 0\nmove 0\nat 6250, moving 0\nclose 0\n",
-    "imc_line_shaft": "open 0\nbefore: the cutter is at 0\nafter: the cutter runs as the master: 1\n"
-    "slaves by the master: 0.50 -1.00\nclose 0\n",
-}
-"""The arc of the gantry is half a circle around (60, 25) from (60, 0); the gears are 0.5 and -1."""
 
 FORKS = """\
 #include <stdio.h>
@@ -104,24 +87,18 @@ def test_functions_answer_and_write_as_the_facade_in_the_same_process(
 
 
 @pytest.mark.long
-@pytest.mark.parametrize("name", PROGRAMS)
+@pytest.mark.parametrize("name", C_PROGRAMS)
 def test_a_program_says_the_same_without_a_server(name: str, tmp_path: Path) -> None:
-    kind = PROGRAMS[name]
+    kind, wanted, file = name.partition("_")[0], C_PROGRAMS[name], tmp_path / "plant.toml"
     _built(kind, tmp_path)
     program = _linked(kind, EXAMPLES / "c" / f"{name}.c", tmp_path)
-    file = tmp_path / "plant.toml"
-    rows = {
-        "apci": f'controller = "apci"\nfile = "{SYSTEM}"',
-        "imc": 'controller = "imc"\nfile = "card.toml"',
-        "fanuc": 'controller = "fanuc"',
-    }
-    (tmp_path / "card.toml").write_text("number_of_axes = 4\nready = true\n")
-    file.write_text(f'[doors]\nhttp = 0\n[[machine]]\nname = "a"\n{rows[kind]}\n')
+    machine = f'file = "{EXAMPLES / wanted.file}"\n' if wanted.file else ""
+    file.write_text(f'[doors]\nhttp = 0\n[[machine]]\nname = "a"\ncontroller = "{kind}"\n{machine}')
     ran = subprocess.run(
-        [program], env=environment(POLYCNC_SERVED=str(file)), capture_output=True, text=True, timeout=60,
-        check=False,
+        [program], env=environment(POLYCNC_SERVED=str(file)), input=wanted.given, capture_output=True, text=True,
+        timeout=60, check=False,
     )  # fmt: skip
-    assert (ran.stdout, ran.stderr) == (SAID.get(name) or facade_says(), "")
+    assert (ran.stdout, ran.stderr) == (wanted.expected, "")
 
 
 @pytest.mark.long
