@@ -70,7 +70,7 @@ name, its version and a hash of its table, 16 bytes each. The answer is `PNCCALL
 call is its length (4 bytes, of what follows), number and serial number (2 each), then the arguments: a number as it is, what
 is read behind a pointer as a size (4 bytes, 0xFFFFFFFF: null) and the bytes, what is written as the room for it. The answer is
 its length, number, serial number, state (4 bytes, 1: refused), the result (8 bytes), the sizes of all outputs, and the
-outputs. No frame has more than 65,536 bytes. A frame that is none of these ends the connection; nothing of it is carried out.
+outputs. No frame has more than 66,560 bytes. A frame that is none of these ends the connection; nothing of it is carried out.
 
 ## A trace
 

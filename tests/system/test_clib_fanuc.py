@@ -18,7 +18,7 @@ from polycnc.controllers.fanuc.clib import FWLIB
 from polycnc.servers.process import Machinery
 from support import c_meant
 from support.c_hold import Hold, Meant
-from support.c_library import Door, at_door, loaded
+from support.c_library import Door, Guarded, at_door, loaded
 from support.focas_line import Line
 from support.fwlib_calls import AT_HOME, HANDLE, before, number_of, size_of
 from support.often import share
@@ -109,6 +109,27 @@ def test_one_axis_is_written_into_room_for_one(
     room = (ctypes.c_uint8 * 40)(*[0xEE] * 40)
     assert library.cnc_absolute(handle, ctypes.c_int16(-1), ctypes.c_int16(8), room) == fwlib.EW_LENGTH
     assert bytes(room) == b"\xee" * 40
+
+
+def test_as_much_is_read_at_once_as_16_bits_count(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    library, door = loaded("fanuc", tmp_path), Door(("fanuc", Machinery(axes=2)))
+    at_door(monkeypatch, door)
+    handle, number, text = (
+        ctypes.c_uint16(),
+        ctypes.c_uint16(0xFFFF),
+        "O0007\n" + "G4X0.01\n" * 11_000 + "M30\n",
+    )
+    try:
+        control: Any = door.devices[0]
+        control.programs.register(7, text)
+        assert library.cnc_allclibhndl(ctypes.byref(handle)) == 0
+        assert library.cnc_upstart(handle, 7) == 0
+        memory = Guarded(4 + 0xFFFF)
+        assert library.cnc_upload(handle, ctypes.c_void_p(memory.address), ctypes.byref(number)) == 0
+        assert memory.content[4:] == f"%\n{text}%".encode()[:0xFFFF]
+        assert (memory.is_kept, number.value) == (True, 0xFFFF)
+    finally:
+        door.close()
 
 
 def test_nobody_there_is_the_manuals_code_at_once(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:

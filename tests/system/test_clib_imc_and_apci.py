@@ -17,11 +17,13 @@ from polycnc.controllers.imc.clib import IMCNET
 from polycnc.controllers.library.clib import Call, Slot
 from polycnc.servers.process import Machinery
 from support import c_meant
-from support.c_hold import Hold
+from support.c_hold import Hold, Passed
 from support.c_library import Door, Guarded, at_door, built, loaded
 
 SYSTEM = Path(__file__).parents[2] / "examples" / "apci_system.dat"
 AXES = 3
+LARGEST, LEAST = 0x7FFFFFFF, -0x80000000
+MANY = 4096  # more elements than any call looks at
 
 
 def _size(call: Call, slot: Slot, numbers: dict[str, Any]) -> int:
@@ -30,7 +32,7 @@ def _size(call: Call, slot: Slot, numbers: dict[str, Any]) -> int:
     counter = next((each.name for each in call.function.arguments if each.length_of == name), "")
     if counter:
         width = 8 if name == "spdbuf" else slot.width
-        return max(0, int(numbers[counter])) * width
+        return max(0, min(MANY, int(numbers[counter]))) * width
     if slot.argument.many == "MAXAXIS":
         return 18 * slot.width
     if slot.argument.many:  # up to the highest selected axis
@@ -48,12 +50,19 @@ def _imc_number(call: Call, slot: Slot, dice: random.Random) -> Any:
     if name == "Handle":
         return 1 if dice.random() < 0.95 else dice.choice((0, 2, 77))
     if slot.argument.length_of:
-        return dice.choice((1, 2, 3, 5, 0, 32, 33, 127, 4000, -1 if name in ("rdnum", "nWords") else 6))
+        return dice.choice((1, 2, 3, 5, 0, 32, 33, 127, 4000, -1, LARGEST, LEAST))
     if name == "paramloc" and dice.random() < 0.7:
         return dice.choice((imclib.runLoc, imclib.mcstgposLoc, imclib.mcsgoLoc, imclib.encpLoc))
     if dice.random() < 0.7:
         return dice.randrange(0, 4)
     return None
+
+
+def _larger_than_a_frame(call: Call, passed: list[Passed]) -> Any:
+    """Answer a list of more elements than a frame holds, as the library does itself."""
+    if call.function.name != "IMC_SetMulParam" or passed[1].is_null or passed[2].python <= MANY:
+        return None
+    return imclib.IMC_INVALID_PARAM
 
 
 def _imc_hold(monkeypatch: pytest.MonkeyPatch, folder: Path, rounds: int, seed: int) -> Hold:
@@ -148,7 +157,7 @@ def _apci_number(call: Call, slot: Slot, dice: random.Random) -> Any:
     if slot.element is ctypes.c_double:
         return dice.choice((0.0, 2.5, -7.25, 400.0, 1e101, float("nan"), -0.0))
     if slot.argument.length_of:
-        return dice.choice((0, 1, 3, 17, -4))
+        return dice.choice((0, 1, 3, 17, -4, LARGEST, LEAST))
     if slot.argument.name == "ndx" and dice.random() < 0.8:
         return dice.randrange(-1, 1001)
     if dice.random() < 0.75:
@@ -243,7 +252,7 @@ def test_common_buffers_go_through_the_pointer_in_a_structure(
     library = hold.c
     try:
         assert library.InitMcuSystem((pcap.TSRP * 18)()) == 0
-        content = (ctypes.c_uint8 * 9)(*b"abcdefghi")
+        content, held = (ctypes.c_uint8 * 9)(*b"abcdefghi"), Guarded(1001, bytes(1001))
         into = (ctypes.c_uint8 * 9)(*[0xEE] * 9)
         write = CBCNCT(2, 7, ctypes.addressof(content))
         read = CBCNCT(2, 5, ctypes.addressof(into))
@@ -252,7 +261,10 @@ def test_common_buffers_go_through_the_pointer_in_a_structure(
         assert bytes(into) == b"abcde" + b"\xee" * 4
         assert bytes(write) == bytes(CBCNCT(2, 7, ctypes.addressof(content)))
         assert library.rdcbcnct(ctypes.byref(CBCNCT(9, 5, ctypes.addressof(into)))) == 1
-        assert library.rdcbcnct(ctypes.byref(CBCNCT(2, -1, ctypes.addressof(into)))) == 2
+        for call in (library.rdcbcnct, library.wrcbcnct):
+            for size in (-1, 1001, 70_000, LARGEST, LEAST):  # more than there is
+                assert call(ctypes.byref(CBCNCT(2, size, held.address))) == 2
+        assert held.content == bytes(1001)
         assert library.rdcbcnct(ctypes.byref(CBCNCT(2, 5, None))) == 4
         assert library.rdcbcnct(None) == 1
         assert bytes(into) == b"abcde" + b"\xee" * 4

@@ -33,7 +33,8 @@
 #error "the structures of this library are those of little-endian machines"
 #endif
 
-#define PC_MOST 65536u     /* bytes of a frame */
+#define PC_MOST 66560u      /* bytes of a frame: as many as 16 bits count, and what is beside them */
+#define PC_MOST_ROOM 65540u /* bytes of an output */
 #define PC_NULL 0xFFFFFFFFu /* the size of what a null pointer leads to */
 #define PC_WAIT_MS 10000   /* for an answer, where the program says nothing */
 #define PC_CONNECTIONS 64

@@ -352,7 +352,7 @@ static uint32_t pc_pack(unsigned char *frame, uint16_t number, uint16_t serial, 
                 at = pc_put(frame, at, each->from, size);
         }
         if (each->what != PC_READ) {
-            size = each->to ? each->room : PC_NULL;
+            size = !each->to ? PC_NULL : each->room > PC_MOST_ROOM ? PC_MOST_ROOM : each->room;
             at = pc_put(frame, at, &size, 4);
         }
     }
