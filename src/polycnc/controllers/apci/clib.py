@@ -27,6 +27,11 @@ TSRPX: Any = lay_out(
 _WITHOUT_A_PLACE = ("rdaux", "wraux", "rdlp", "wrlp", "rdlpndx", "wrlpndx", "rddv", "rdsdec", "wrsdec")
 _SERVED = "booting a served board would make another one than the one that is served; it answers 202"
 
+# The names of functions as the prints of the manual have them besides: programs may be linked by these.
+_PRINTED = {
+    "rdcbcnc": "rdcbcnct", "rdjtvI": "rdjtvl", "rdlsM": "rdlsm", "rdtrtv": "rdtrtvl", "wrbcnct": "wrcbcnct",
+    "wrjtvI": "wrjtvl", "wrppe": "wrrp", "wrtrtv": "wrtrtvl",
+}  # fmt: skip
 _MOST = COMMON_BUFFER_BYTES + 1
 _DECLARATIONS = """\
 typedef void(PC_CALL *InterruptRoutine)(int lines);
@@ -96,6 +101,7 @@ MCUG3 = CLibrary(
         "rdslsp": Success.FAILED,
         "BootFile": BootCode.DEVICE_ADDRESSES,
     },
+    aliases=_PRINTED,
     left_out={"BootFile": _SERVED},
     interrupts=("MCUG3_SetBoardIntRoutine", "MCUG3_ResetBoardIntRoutine"),
 )
