@@ -21,8 +21,10 @@ is C99 on sockets; nothing else of Python or polycnc is in the program's process
 | structures | packed as the manuals have them; for programs made with later headers of `fwlib32`, which pack to 4 bytes, the library is written with `--packing 4`. A length counts the program's bytes: ranges of macro variables are `8 + 8 * n` instead of `6 + 6 * n` |
 | clients | one connection is one program of the library, with its own handles; calls of several threads are carried out one after the other |
 | time | passes at the rate of the served machine; calls that follow each other closely find it as it was up to 5 ms before |
-| waiting | 10 s for an answer; with `cnc_allclibhndl3` as long as the program says |
-| null pointers | refused with a code; nothing is carried out |
+| waiting | 10 s for an answer, also where it comes in pieces; with `cnc_allclibhndl3` as long as the program says. Threads that call other controls do not wait meanwhile; those that open the same one share its outcome |
+| the program's stack | 16 kB are enough for a call, 32 kB for one that opens |
+| a fork | the child has no connection and no handle, and may open its own; calls of the parent's threads go on |
+| null pointers | refused with a code; nothing is carried out. The password of `IMC_OpenUsePassword` may be null |
 | refused calls | write nothing; others write never more than the length that the program passes, or one structure |
 
 ## Targets
@@ -56,7 +58,7 @@ answers and bytes are the same; no server is needed, and `POLYCNC_CALLS` has no 
 | --- | --- |
 | machines | those of the library's kind in the file of `polycnc serve` that `POLYCNC_SERVED` names, else one as `polycnc calls KIND` has it; doors, programs, rates and scenarios of the file are left aside |
 | time | passes only when the program reads the same again in the same cycle, a cycle each time: a program that spins ends at once, one that sleeps sees no time pass, and the same calls give the same bits |
-| a fork | the child must not call the library |
+| a fork | the child has no machines: what it calls answers as where nobody is |
 | the interpreter | does not end before the program; signals stay the program's |
 
 It is for tests and debuggers. A crash of the program takes the machine with it, and the first call takes a second or two.
@@ -68,7 +70,7 @@ name, its version and a hash of its table, 16 bytes each. The answer is `PNCCALL
 call is its length (4 bytes, of what follows), number and serial number (2 each), then the arguments: a number as it is, what
 is read behind a pointer as a size (4 bytes, 0xFFFFFFFF: null) and the bytes, what is written as the room for it. The answer is
 its length, number, serial number, state (4 bytes, 1: refused), the result (8 bytes), the sizes of all outputs, and the
-outputs. No frame has more than 65,536 bytes. A frame that is none of these ends the connection; nothing of it is carried out.
+outputs. No frame has more than 66,560 bytes. A frame that is none of these ends the connection; nothing of it is carried out.
 
 ## A trace
 

@@ -28,29 +28,31 @@ _FILL = 0xA5
 
 
 @cache
-def folder_of(kind: str) -> Path:
+def folder_of(kind: str, packing: int = 0) -> Path:
     """Return the folder of a library that is built for this computer, once; the end of the tests removes it."""
     import atexit
 
     folder = Path(mkdtemp(prefix="polycnc_clib_"))
     atexit.register(shutil.rmtree, folder, True)
-    write_library(library_of(kind), folder)
-    build_library(library_of(kind), folder, "linux")
+    library = library_of(kind).packed(packing)
+    assert library is not None
+    write_library(library, folder)
+    build_library(library, folder, "linux")
     return folder
 
 
-def built(kind: str) -> Path:
+def built(kind: str, packing: int = 0) -> Path:
     """Return the folder of a library, or skip the test where nothing builds it."""
     if shutil.which("gcc") is None:
         pytest.skip(NO_COMPILER)
-    return folder_of(kind)
+    return folder_of(kind, packing)
 
 
-def loaded(kind: str, folder: Path) -> Any:
+def loaded(kind: str, folder: Path, packing: int = 0) -> Any:
     """Load a library as a program of its own has it: with no connection yet."""
     name = library_of(kind).name
     own = folder / f"lib{name}_{len(list(folder.iterdir()))}.so"
-    shutil.copy(built(kind) / f"lib{name}.so", own)
+    shutil.copy(built(kind, packing) / f"lib{name}.so", own)
     return ctypes.CDLL(str(own))
 
 
@@ -129,20 +131,29 @@ def at_door(monkeypatch: pytest.MonkeyPatch, door: Door) -> None:
 
 
 class Guarded:
-    """So many bytes whose last one lies before a page that nobody may touch, and pages of a pattern in front."""
+    """So many bytes between pages that nobody may touch: the last one lies before the one behind them, or, where they
+    lie `low`, the first one behind the one before them; what is left between is a pattern.
+    """
 
-    def __init__(self, size: int, content: bytes = b"") -> None:
+    def __init__(self, size: int, content: bytes = b"", *, low: bool = False) -> None:
         libc = ctypes.CDLL(None, use_errno=True)
-        pages = -(-size // _PAGE) + 1
-        self._map = mmap.mmap(-1, (pages + 1) * _PAGE)
-        first = ctypes.addressof(ctypes.c_char.from_buffer(self._map))
-        guard = first + pages * _PAGE
-        assert libc.mprotect(ctypes.c_void_p(guard), ctypes.c_size_t(_PAGE), 0) == 0
-        self.address = guard - size
-        self.size, self._first = size, first
+        pages = max(1, -(-size // _PAGE))
+        self._map = mmap.mmap(-1, (pages + 2) * _PAGE)
+        below = ctypes.addressof(ctypes.c_char.from_buffer(self._map))
+        first, guard = below + _PAGE, below + (pages + 1) * _PAGE
+        for page in (below, guard):
+            assert libc.mprotect(ctypes.c_void_p(page), ctypes.c_size_t(_PAGE), 0) == 0
+        self.address = first if low else guard - size
+        self.size, self._first, self._guard = size, first, guard
         ctypes.memset(first, _FILL, pages * _PAGE)
         ctypes.memmove(self.address, content[:size], min(size, len(content)))
-        self._before = ctypes.string_at(first, self.address - first)
+        self._around = self._pattern()
+
+    def _pattern(self) -> bytes:
+        end = self.address + self.size
+        return ctypes.string_at(self._first, self.address - self._first) + ctypes.string_at(
+            end, self._guard - end
+        )
 
     @property
     def content(self) -> bytes:
@@ -150,9 +161,9 @@ class Guarded:
         return ctypes.string_at(self.address, self.size)
 
     @property
-    def front_is_whole(self) -> bool:
-        """Tell whether nothing was written before them."""
-        return ctypes.string_at(self._first, self.address - self._first) == self._before
+    def is_kept(self) -> bool:
+        """Tell whether nothing was written before them or behind them."""
+        return self._pattern() == self._around
 
 
 PATTERN = bytes([_FILL])

@@ -1,12 +1,16 @@
-"""What the example programs have to print, worked out by the façade in Python."""
+"""The C programs of examples/c: what each needs, is given to read, and has to print."""
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from dataclasses import dataclass
 from pathlib import Path
 
 from polycnc.controllers.fanuc import PowerMate, fwlib
+from polycnc.servers.process import Machinery
 
-SYSTEM = Path(__file__).parents[2] / "examples" / "apci_system.dat"
+EXAMPLES = Path(__file__).parents[2] / "examples"
+SYSTEM = EXAMPLES / "apci_system.dat"
 
 
 def facade_says() -> str:
@@ -25,3 +29,68 @@ def facade_says() -> str:
         f"parameter {found:d}: {parameter.u.ldata}", "free 0",
     )  # fmt: skip
     return "".join(f"{line}\n" for line in lines)
+
+
+@dataclass(frozen=True)
+class CProgram:
+    """A program: `said` is what it prints when it reads `given`; `file` is the file of its machine."""
+
+    said: str | Callable[[], str]
+    given: str = ""
+    file: str = ""
+
+    @property
+    def expected(self) -> str:
+        """What it prints."""
+        return self.said if isinstance(self.said, str) else self.said()
+
+    @property
+    def machinery(self) -> Machinery:
+        """The machine that it is for."""
+        return Machinery(file=EXAMPLES / self.file if self.file else None)
+
+
+_TWICE = "go\ngo\n"
+COLLECTED = {
+    "fanuc": "mode 1, run 0, program 0, at 0 0, feed 0, alarms 0",
+    "apci": "at 0.000 0.000 0.000, real 0.000, velocity 100.0, errors 0",
+    "imc": "at 0 0, encoders 0 0, errors 0 0",
+}
+"""What a collector says of a sample, by the kind of its machine."""
+C_PROGRAMS = {
+    "fanuc_macro": CProgram(facade_says),
+    "fanuc_events": CProgram(
+        "mode 1, run 0, motion 0, emergency 0, alarm 0\n#500 = 3.0\n#501 = 1.0\n#502 = 0.0\n"
+        "too short 2\nfree 0\nfree again -8\n"
+    ),
+    "fanuc_gantry": CProgram("open 0\nhome 0 0\nat 5000 20000\nwaited for a buffer 1\nfree 0\n"),
+    "apci_jog": CProgram("init 0, board 4, 3 axes\nat 12.500\n", file="apci_system.dat"),
+    # the arc of the gantry is half a circle around (60, 25) from (60, 0)
+    "apci_gantry": CProgram(
+        "init 0, 3 axes\nhomed 3 axes\nat 60.000 50.000 0.000\nerrors 0\n", file="apci_system.dat"
+    ),
+    # the slave of the shaft turns by 0.5, 0.25 and 0.4 of the master's 20, 10 and -25 mm
+    "apci_shaft": CProgram(
+        "init 0\nturn 1: at 20.000 10.000, mark passed 1 times\n"
+        "turn 2: at 30.000 12.500, mark passed 0 times\nturn 3: at 5.000 2.500, mark passed 1 times\nerrors 0\n",
+        file="apci_system.dat",
+    ),
+    "apci_collector": CProgram(
+        f"init 0\n1: {COLLECTED['apci']}\n2: {COLLECTED['apci']}\n", _TWICE, "apci_system.dat"
+    ),
+    "imc_move": CProgram(
+        "adapters 0: 1\nopen 0\nmove 0\nat 6250, moving 0\nclose 0\n", file="imc_gantry.toml"
+    ),
+    "imc_contour": CProgram("open 0\nat 3000 6000\nerrors 0\nclose 0\n", file="imc_gantry.toml"),
+    # the gears of the shaft are 0.5 and -1
+    "imc_line_shaft": CProgram(
+        "open 0\nbefore: the cutter is at 0\nafter: the cutter runs as the master: 1\n"
+        "slaves by the master: 0.50 -1.00\nclose 0\n",
+        file="imc_gantry.toml",
+    ),
+    "imc_gantry": CProgram("open 0\nhomed 2 axes\nat 2000 6000\nclose 0\n", file="imc_gantry.toml"),
+    "imc_collector": CProgram(
+        f"open 0\n1: {COLLECTED['imc']}\n2: {COLLECTED['imc']}\nclose 0\n", _TWICE, "imc_gantry.toml"
+    ),
+}
+"""By name, which begins with the kind of the library. `fanuc_collector` is told where the control is."""

@@ -9,16 +9,19 @@ import struct
 import threading
 from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
 import pytest
 
 from polycnc.controllers.fanuc import PowerMate, fwlib
 from polycnc.controllers.fanuc.clib import FWLIB
 from polycnc.servers.process import Machinery
-from support.c_hold import Hold
-from support.c_library import Door, at_door, built, loaded
+from support import c_meant
+from support.c_hold import Hold, Meant
+from support.c_library import Door, Guarded, at_door, loaded
 from support.focas_line import Line
-from support.fwlib_calls import AT_HOME, before, number_of, size_of
+from support.fwlib_calls import AT_HOME, HANDLE, before, number_of, size_of
+from support.often import share
 
 AXES = 4
 
@@ -30,34 +33,49 @@ def door() -> Iterator[Door]:
     made.close()
 
 
-def _hold(
-    door: Door, monkeypatch: pytest.MonkeyPatch, folder: Path, rounds: int, seed: int
-) -> tuple[Hold, PowerMate]:
-    at_door(monkeypatch, door)
-    twin = PowerMate(AXES, characters=128_000)
-    session = fwlib.Session()
-    session.attach(0, twin)
-    library = loaded("fanuc", folder)
-    handle = ctypes.c_uint16()
-    assert (
-        (library.cnc_allclibhndl(ctypes.byref(handle)), handle.value) == session.cnc_allclibhndl() == (0, 1)
-    )
-    hold = Hold(FWLIB, library, session, random.Random(seed), number_of, size_of, before)
+def _rounds(hold: Hold, devices: tuple[Any, Any], rounds: int) -> None:
     calls = [each for each in FWLIB.calls if each.function.name not in AT_HOME]
+    for each in calls:
+        hold.nulls(each)
     for number in range(rounds):
+        for device in devices:
+            device.select_mode(c_meant.FANUC_MODES[number % len(c_meant.FANUC_MODES)])
+            for program in (7, 8):
+                if program not in device.programs:
+                    device.programs.register(program, c_meant.PROGRAM.replace("7", str(program)))
         for call in hold.dice.sample(calls, len(calls)):
             hold.call(call)
-        for device in (twin, door.devices[0]):
+        for device in devices:
             device.advance(5 * (number % 60))
-    return hold, twin
+
+
+def _hold(monkeypatch: pytest.MonkeyPatch, folder: Path, rounds: int, seed: int) -> Hold:
+    library, door = loaded("fanuc", folder), Door(("fanuc", Machinery(axes=AXES)))
+    at_door(monkeypatch, door)
+    twin, session = PowerMate(AXES, characters=128_000), fwlib.Session()
+    session.attach(0, twin)
+    handle = ctypes.c_uint16()
+    hold = Hold(
+        FWLIB, library, session, random.Random(seed), number_of, size_of, before, c_meant.FANUC, twin.snapshot
+    )
+    try:
+        assert library.cnc_allclibhndl(ctypes.byref(handle)) == session.cnc_allclibhndl()[0] == 0
+        assert handle.value == HANDLE
+        _rounds(hold, (twin, door.devices[0]), rounds)
+    finally:
+        door.close()
+    for each in FWLIB.calls:
+        if each.function.name not in AT_HOME:
+            hold.lost(each)
+    return hold
 
 
 def test_every_function_answers_and_writes_as_the_facade(
-    door: Door, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
-    built("fanuc")
-    hold, _ = _hold(door, monkeypatch, tmp_path, 12, 11)
-    assert {0, 2, 3, 4, 5, -8} <= hold.codes
+    hold = _hold(monkeypatch, tmp_path, 10, 11)
+    assert {0, 2, 3, 4, 5, -8, -16} <= hold.codes
+    assert len(hold.done) > 75
 
 
 @pytest.mark.long
@@ -66,13 +84,9 @@ def test_every_function_answers_and_writes_as_the_facade(
 def test_100_000_calls_answer_and_write_as_the_facade(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path, seed: int
 ) -> None:
-    built("fanuc")
-    door = Door(("fanuc", Machinery(axes=AXES)))
-    try:
-        hold, _ = _hold(door, monkeypatch, tmp_path, 1_090, seed)
-        assert len(hold.told) > 100_000 - 92
-    finally:
-        door.close()
+    hold = _hold(monkeypatch, tmp_path, 1_090, seed)
+    assert len(hold.told) > 100_000
+    assert {each.function.name for each in FWLIB.calls} - set(hold.done) == {*AT_HOME}
 
 
 def test_every_function_is_exported_by_its_name(tmp_path: Path) -> None:
@@ -95,6 +109,27 @@ def test_one_axis_is_written_into_room_for_one(
     room = (ctypes.c_uint8 * 40)(*[0xEE] * 40)
     assert library.cnc_absolute(handle, ctypes.c_int16(-1), ctypes.c_int16(8), room) == fwlib.EW_LENGTH
     assert bytes(room) == b"\xee" * 40
+
+
+def test_as_much_is_read_at_once_as_16_bits_count(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    library, door = loaded("fanuc", tmp_path), Door(("fanuc", Machinery(axes=2)))
+    at_door(monkeypatch, door)
+    handle, number, text = (
+        ctypes.c_uint16(),
+        ctypes.c_uint16(0xFFFF),
+        "O0007\n" + "G4X0.01\n" * 11_000 + "M30\n",
+    )
+    try:
+        control: Any = door.devices[0]
+        control.programs.register(7, text)
+        assert library.cnc_allclibhndl(ctypes.byref(handle)) == 0
+        assert library.cnc_upstart(handle, 7) == 0
+        memory = Guarded(4 + 0xFFFF)
+        assert library.cnc_upload(handle, ctypes.c_void_p(memory.address), ctypes.byref(number)) == 0
+        assert memory.content[4:] == f"%\n{text}%".encode()[:0xFFFF]
+        assert (memory.is_kept, number.value) == (True, 0xFFFF)
+    finally:
+        door.close()
 
 
 def test_nobody_there_is_the_manuals_code_at_once(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
@@ -233,6 +268,24 @@ def _clients(rounds: int) -> None:
 
 def test_clients_that_end_in_the_middle_of_a_call_leave_nothing() -> None:
     _clients(60)
+
+
+def test_structures_of_the_other_packing_are_not_overrun(
+    door: Door, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    packed = FWLIB.packed(4)
+    assert packed is not None
+    library, handle, codes = loaded("fanuc", tmp_path, 4), ctypes.c_uint16(), set[int]()
+    at_door(monkeypatch, door)
+    assert (library.cnc_allclibhndl(ctypes.byref(handle)), handle.value) == (0, HANDLE)
+    meant = Meant(
+        {name: {each: value for each, value in row.items() if not isinstance(value, bytes)}
+         for name, row in c_meant.FANUC.rows.items()}
+    )  # fmt: skip
+    hold = Hold(packed, library, fwlib.Session(), random.Random(5), number_of, size_of, meant=meant)
+    for _ in range(share(12)):
+        codes |= {hold.harmless(each) for each in packed.calls if each.function.name not in AT_HOME}
+    assert {0, 2, 3, 4, 5, -8} <= codes
 
 
 @pytest.mark.long

@@ -16,11 +16,14 @@ from polycnc.controllers.imc import Card, imclib
 from polycnc.controllers.imc.clib import IMCNET
 from polycnc.controllers.library.clib import Call, Slot
 from polycnc.servers.process import Machinery
-from support.c_hold import Hold
+from support import c_meant
+from support.c_hold import Hold, Passed
 from support.c_library import Door, Guarded, at_door, built, loaded
 
 SYSTEM = Path(__file__).parents[2] / "examples" / "apci_system.dat"
 AXES = 3
+LARGEST, LEAST = 0x7FFFFFFF, -0x80000000
+MANY = 4096  # more elements than any call looks at
 
 
 def _size(call: Call, slot: Slot, numbers: dict[str, Any]) -> int:
@@ -29,7 +32,7 @@ def _size(call: Call, slot: Slot, numbers: dict[str, Any]) -> int:
     counter = next((each.name for each in call.function.arguments if each.length_of == name), "")
     if counter:
         width = 8 if name == "spdbuf" else slot.width
-        return max(0, int(numbers[counter])) * width
+        return max(0, min(MANY, int(numbers[counter]))) * width
     if slot.argument.many == "MAXAXIS":
         return 18 * slot.width
     if slot.argument.many:  # up to the highest selected axis
@@ -47,12 +50,19 @@ def _imc_number(call: Call, slot: Slot, dice: random.Random) -> Any:
     if name == "Handle":
         return 1 if dice.random() < 0.95 else dice.choice((0, 2, 77))
     if slot.argument.length_of:
-        return dice.choice((1, 2, 3, 5, 0, 32, 33, 127, 4000, -1 if name in ("rdnum", "nWords") else 6))
+        return dice.choice((1, 2, 3, 5, 0, 32, 33, 127, 4000, -1, LARGEST, LEAST))
     if name == "paramloc" and dice.random() < 0.7:
         return dice.choice((imclib.runLoc, imclib.mcstgposLoc, imclib.mcsgoLoc, imclib.encpLoc))
     if dice.random() < 0.7:
         return dice.randrange(0, 4)
     return None
+
+
+def _larger_than_a_frame(call: Call, passed: list[Passed]) -> Any:
+    """Answer a list of more elements than a frame holds, as the library does itself."""
+    if call.function.name != "IMC_SetMulParam" or passed[1].is_null or passed[2].python <= MANY:
+        return None
+    return imclib.IMC_INVALID_PARAM
 
 
 def _imc_hold(monkeypatch: pytest.MonkeyPatch, folder: Path, rounds: int, seed: int) -> Hold:
@@ -66,25 +76,40 @@ def _imc_hold(monkeypatch: pytest.MonkeyPatch, folder: Path, rounds: int, seed: 
         assert library.IMC_Open(ctypes.byref(handle), 0, 0) == 0
         assert handle.value == 1
         _, mine = session.IMC_Open(0, 0)
-        hold = Hold(IMCNET, library, session, random.Random(seed), _imc_number, _size, objects={1: mine})
+        hold = Hold(
+            IMCNET,
+            library,
+            session,
+            random.Random(seed),
+            _imc_number,
+            _size,
+            meant=c_meant.IMC,
+            state=twin.snapshot,
+            objects={1: mine},
+        )
         opening = {"IMC_Open", "IMC_OpenX", "IMC_OpenUsePassword", "IMC_Close"}
         calls = [each for each in IMCNET.calls if each.function.name not in opening]
+        for each in calls:
+            hold.nulls(each)
         for number in range(rounds):
             for call in hold.dice.sample(calls, len(calls)):
                 hold.call(call)
             for card in (twin, door.devices[0]):
                 card.advance(3 * (number % 90))
-        return hold
     finally:
         door.close()
+    for each in calls:
+        hold.lost(each)
+    return hold
 
 
 def test_every_function_of_imcnet_answers_and_writes_as_the_facade(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
     built("imc")
-    hold = _imc_hold(monkeypatch, tmp_path, 14, 3)
-    assert {0, 6, 7, 8, 9, 13} <= hold.codes
+    hold = _imc_hold(monkeypatch, tmp_path, 10, 3)
+    assert {0, 3, 6, 7, 8, 9, 13} <= hold.codes
+    assert len(hold.done) > 42
 
 
 @pytest.mark.long
@@ -92,7 +117,9 @@ def test_every_function_of_imcnet_answers_and_writes_as_the_facade(
 @pytest.mark.parametrize("seed", range(1))
 def test_100_000_calls_of_imcnet(monkeypatch: pytest.MonkeyPatch, tmp_path: Path, seed: int) -> None:
     built("imc")
-    assert len(_imc_hold(monkeypatch, tmp_path, 2_100, seed).told) > 100_000
+    hold = _imc_hold(monkeypatch, tmp_path, 2_100, seed)
+    assert len(hold.told) > 100_000
+    assert len(hold.done) == len(IMCNET.calls) - 5  # those that open, close and look for adapters
 
 
 def test_cards_are_opened_closed_lost_and_found(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
@@ -130,7 +157,7 @@ def _apci_number(call: Call, slot: Slot, dice: random.Random) -> Any:
     if slot.element is ctypes.c_double:
         return dice.choice((0.0, 2.5, -7.25, 400.0, 1e101, float("nan"), -0.0))
     if slot.argument.length_of:
-        return dice.choice((0, 1, 3, 17, -4))
+        return dice.choice((0, 1, 3, 17, -4, LARGEST, LEAST))
     if slot.argument.name == "ndx" and dice.random() < 0.8:
         return dice.randrange(-1, 1001)
     if dice.random() < 0.75:
@@ -144,17 +171,22 @@ def _apci(monkeypatch: pytest.MonkeyPatch, folder: Path, seed: int) -> tuple[Hol
     at_door(monkeypatch, door)
     twin, session = Board(load_system_file(SYSTEM)), pcap.Session()
     session.attach(twin, clock=None)
-    hold = Hold(MCUG3, library, session, random.Random(seed), _apci_number, _size)
+    hold = Hold(
+        MCUG3,
+        library,
+        session,
+        random.Random(seed),
+        _apci_number,
+        _size,
+        meant=c_meant.APCI,
+        state=twin.snapshot,
+    )
     return hold, door, twin
 
 
 BESIDE = set(MCUG3.extensions)
 """What needs an extended record, and does nothing with one of the manual."""
-FILES = (
-    BESIDE
-    | set(MCUG3.interrupts)
-    | {"InitMcuSystem2", "InitMcuSystem3", "txbf", "txbf2", "rdcbcnct", "wrcbcnct", "getEnvStr"}
-)
+FILES = BESIDE | set(MCUG3.interrupts) | {"rdcbcnct", "wrcbcnct"}
 
 
 def _apci_hold(monkeypatch: pytest.MonkeyPatch, folder: Path, rounds: int, seed: int) -> Hold:
@@ -162,26 +194,33 @@ def _apci_hold(monkeypatch: pytest.MonkeyPatch, folder: Path, rounds: int, seed:
     try:
         by_name = {each.function.name: each for each in MCUG3.calls}
         assert hold.c.rdaxstb(0, 3) == hold.python.rdaxstb(0, 3) == 0
-        tsrp = (pcap.TSRP * 18)()
-        mine = pcap.tsrp_array()
+        calls = [each for name, each in by_name.items() if name not in FILES]
+        for each in calls:  # no board is there yet
+            hold.call(each)
+        tsrp, mine = (pcap.TSRP * 18)(), pcap.tsrp_array()
         assert hold.c.InitMcuSystem(tsrp) == hold.python.InitMcuSystem(mine) == 0
         assert bytes(tsrp) == b"".join(map(bytes, mine))[: ctypes.sizeof(tsrp)]
-        calls = [each for name, each in by_name.items() if name not in FILES]
+        for each in calls:
+            hold.nulls(each)
         for number in range(rounds):
             for call in hold.dice.sample(calls, len(calls)):
                 hold.call(call)
             for board in (twin, door.devices[0]):
                 board.advance(3 * (number % 90))
-        return hold
     finally:
         door.close()
+    for each in calls:
+        hold.lost(each)
+    return hold
 
 
 def test_every_function_of_mcug3_answers_and_writes_as_the_facade(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
     built("apci")
-    assert {0, 1} <= _apci_hold(monkeypatch, tmp_path, 5, 4).codes
+    hold = _apci_hold(monkeypatch, tmp_path, 3, 4)
+    assert {0, 1, -4, 31} <= hold.codes
+    assert len(hold.done) > 170
 
 
 @pytest.mark.long
@@ -189,7 +228,9 @@ def test_every_function_of_mcug3_answers_and_writes_as_the_facade(
 @pytest.mark.parametrize("seed", range(1))
 def test_100_000_calls_of_mcug3(monkeypatch: pytest.MonkeyPatch, tmp_path: Path, seed: int) -> None:
     built("apci")
-    assert len(_apci_hold(monkeypatch, tmp_path, 590, seed).told) > 100_000
+    hold = _apci_hold(monkeypatch, tmp_path, 560, seed)
+    assert len(hold.told) > 100_000
+    assert {each.function.name for each in MCUG3.calls} - set(hold.done) == FILES
 
 
 class CBCNCT(ctypes.Structure):
@@ -211,7 +252,7 @@ def test_common_buffers_go_through_the_pointer_in_a_structure(
     library = hold.c
     try:
         assert library.InitMcuSystem((pcap.TSRP * 18)()) == 0
-        content = (ctypes.c_uint8 * 9)(*b"abcdefghi")
+        content, held = (ctypes.c_uint8 * 9)(*b"abcdefghi"), Guarded(1001, bytes(1001))
         into = (ctypes.c_uint8 * 9)(*[0xEE] * 9)
         write = CBCNCT(2, 7, ctypes.addressof(content))
         read = CBCNCT(2, 5, ctypes.addressof(into))
@@ -220,7 +261,10 @@ def test_common_buffers_go_through_the_pointer_in_a_structure(
         assert bytes(into) == b"abcde" + b"\xee" * 4
         assert bytes(write) == bytes(CBCNCT(2, 7, ctypes.addressof(content)))
         assert library.rdcbcnct(ctypes.byref(CBCNCT(9, 5, ctypes.addressof(into)))) == 1
-        assert library.rdcbcnct(ctypes.byref(CBCNCT(2, -1, ctypes.addressof(into)))) == 2
+        for call in (library.rdcbcnct, library.wrcbcnct):
+            for size in (-1, 1001, 70_000, LARGEST, LEAST):  # more than there is
+                assert call(ctypes.byref(CBCNCT(2, size, held.address))) == 2
+        assert held.content == bytes(1001)
         assert library.rdcbcnct(ctypes.byref(CBCNCT(2, 5, None))) == 4
         assert library.rdcbcnct(None) == 1
         assert bytes(into) == b"abcde" + b"\xee" * 4
@@ -258,7 +302,7 @@ def test_values_without_a_place_go_through_an_extended_record(
                 shown = (after.aux, after.lp, after.dv, after.sdec)
                 assert shown == (twin.aux, twin.lp, twin.dv, twin.sdec), name
                 assert list(after.tsrp.scratch) == list(marks)
-                assert memory.front_is_whole
+                assert memory.is_kept
             read = pcap.TSRP(an=axis)
             hold.python.rdaux(read)
             assert read.aux == 2.5 + axis  # so it has been written
@@ -317,3 +361,31 @@ def test_programs_leave_nothing_at_a_board(monkeypatch: pytest.MonkeyPatch, tmp_
         assert len(board.interrupts) == before + 1
     finally:
         door.close()
+
+
+@pytest.mark.parametrize(
+    ("kind", "nobody"), [("fanuc", -9), ("imc", imclib.IMC_DEVICE_NOT_FOUND), ("apci", 31)]
+)
+def test_an_opening_call_finds_a_server_that_was_started_again(
+    kind: str, nobody: int, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    library, machinery = loaded(kind, tmp_path), Machinery(file=SYSTEM if kind == "apci" else None)
+    handle, records = ctypes.c_void_p(), (pcap.TSRP * 18)()
+
+    def opened() -> int:
+        if kind == "apci":
+            return int(library.InitMcuSystem(records))
+        if kind == "imc":
+            return int(library.IMC_Open(ctypes.byref(handle), 0, 0))
+        return int(library.cnc_allclibhndl(ctypes.byref(handle)) or library.cnc_freelibhndl(handle))
+
+    first = Door((kind, machinery))
+    at_door(monkeypatch, first)
+    assert opened() == 0
+    first.close()
+    again = Door((kind, machinery), port=int(first.place.rpartition(":")[2]))
+    try:
+        assert opened() == 0  # no call in between has told the library that the first one is gone
+    finally:
+        again.close()
+    assert opened() == nobody

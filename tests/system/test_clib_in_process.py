@@ -20,25 +20,30 @@ from polycnc.servers.inside import inside
 from support.c_hold import Hold
 from support.c_library import NO_COMPILER
 from support.command import environment
-from support.facade_programs import SYSTEM, facade_says
+from support.facade_programs import C_PROGRAMS, EXAMPLES
 from support.fwlib_calls import AT_HOME, HANDLE, before, number_of, size_of
 
-EXAMPLES = Path(__file__).parents[2] / "examples"
-PROGRAMS = {
-    "fanuc_macro": "fanuc",
-    "apci_jog": "apci",
-    "apci_gantry": "apci",
-    "imc_move": "imc",
-    "imc_line_shaft": "imc",
+FORKS = """\
+#include <stdio.h>
+#include <stdlib.h>
+#include <sys/wait.h>
+#include <unistd.h>
+#include "fwlib32.h"
+int main(void)
+{
+    unsigned short handle, other;
+    ODBST state;
+    int status, code = cnc_allclibhndl(&handle);
+    if (!fork()) {
+        alarm(20);
+        exit(cnc_statinfo(handle, &state) == EW_HANDLE && cnc_allclibhndl(&other) == EW_HSSB ? 42 : 1);
+    }
+    wait(&status);
+    printf("open %d, child %d, ", code, WIFEXITED(status) ? WEXITSTATUS(status) : -1);
+    printf("read %d\\n", cnc_statinfo(handle, &state));
+    return 0;
 }
-SAID = {
-    "apci_jog": "init 0, board 4, 3 axes\nat 12.500\n",
-    "apci_gantry": "init 0, 3 axes\nhomed 3 axes\nat 60.000 50.000 0.000\nerrors 0\n",
-    "imc_move": "adapters 0: 1\nopen 0\nmove 0\nat 6250, moving 0\nclose 0\n",
-    "imc_line_shaft": "open 0\nbefore: the cutter is at 0\nafter: the cutter runs as the master: 1\n"
-    "slaves by the master: 0.50 -1.00\nclose 0\n",
-}
-"""The arc of the gantry is half a circle around (60, 25) from (60, 0); the gears are 0.5 and -1."""
+"""
 
 
 def _built(kind: str, folder: Path) -> Path:
@@ -49,6 +54,14 @@ def _built(kind: str, folder: Path) -> Path:
         pytest.skip("no shared library of Python, or no Python.h, here")
     write_library(library_of(kind), folder, in_process=True)
     return build_library(library_of(kind), folder, "linux", in_process=True)
+
+
+def _linked(kind: str, source: Path, folder: Path) -> Path:
+    subprocess.run(
+        ["gcc", "-std=gnu11", "-I", folder, "-o", folder / "client", source, "-L", folder,
+         f"-l{library_of(kind).name}", f"-Wl,-rpath,{folder}"], check=True,
+    )  # fmt: skip
+    return folder / "client"
 
 
 def test_functions_answer_and_write_as_the_facade_in_the_same_process(
@@ -74,29 +87,27 @@ def test_functions_answer_and_write_as_the_facade_in_the_same_process(
 
 
 @pytest.mark.long
-@pytest.mark.parametrize("name", PROGRAMS)
+@pytest.mark.parametrize("name", C_PROGRAMS)
 def test_a_program_says_the_same_without_a_server(name: str, tmp_path: Path) -> None:
-    kind = PROGRAMS[name]
+    kind, wanted, file = name.partition("_")[0], C_PROGRAMS[name], tmp_path / "plant.toml"
     _built(kind, tmp_path)
-    program = tmp_path / "client"
-    source = EXAMPLES / "c" / f"{name}.c"
-    subprocess.run(
-        ["gcc", "-std=c11", "-I", tmp_path, "-o", program, source, "-L", tmp_path, f"-l{library_of(kind).name}",
-         f"-Wl,-rpath,{tmp_path}"], check=True,
-    )  # fmt: skip
-    file = tmp_path / "plant.toml"
-    rows = {
-        "apci": f'controller = "apci"\nfile = "{SYSTEM}"',
-        "imc": 'controller = "imc"\nfile = "card.toml"',
-        "fanuc": 'controller = "fanuc"',
-    }
-    (tmp_path / "card.toml").write_text("number_of_axes = 4\nready = true\n")
-    file.write_text(f'[doors]\nhttp = 0\n[[machine]]\nname = "a"\n{rows[kind]}\n')
+    program = _linked(kind, EXAMPLES / "c" / f"{name}.c", tmp_path)
+    machine = f'file = "{EXAMPLES / wanted.file}"\n' if wanted.file else ""
+    file.write_text(f'[doors]\nhttp = 0\n[[machine]]\nname = "a"\ncontroller = "{kind}"\n{machine}')
     ran = subprocess.run(
-        [program], env=environment(POLYCNC_SERVED=str(file)), capture_output=True, text=True, timeout=60,
-        check=False,
+        [program], env=environment(POLYCNC_SERVED=str(file)), input=wanted.given, capture_output=True, text=True,
+        timeout=60, check=False,
     )  # fmt: skip
-    assert (ran.stdout, ran.stderr) == (SAID.get(name) or facade_says(), "")
+    assert (ran.stdout, ran.stderr) == (wanted.expected, "")
+
+
+@pytest.mark.long
+def test_the_child_of_a_fork_has_no_machines(tmp_path: Path) -> None:
+    _built("fanuc", tmp_path)
+    (tmp_path / "forks.c").write_text(FORKS)
+    program = _linked("fanuc", tmp_path / "forks.c", tmp_path)
+    ran = subprocess.run([program], env=environment(), capture_output=True, text=True, timeout=60, check=True)
+    assert ran.stdout == "open 0, child 42, read 0\n"
 
 
 def test_a_file_without_such_a_machine_has_none(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:

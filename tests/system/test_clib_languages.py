@@ -148,7 +148,7 @@ def _size_in_basic(name: str, types: dict[str, str]) -> int:
 def test_the_module_of_basic_declares_every_function_and_type_as_c_has_it() -> None:
     text = write_basic(MCUG3).replace("\r\n", "\n")
     declared = {found[1]: found for found in _DECLARED.findall(text)}
-    assert set(declared) == set(MCUG3.functions)
+    assert set(declared) == {*MCUG3.functions, *MCUG3.aliases} - {"rdlsM"}  # which is rdlsm
     by_name = {each.function.name: each for each in MCUG3.calls}
     for name, call in by_name.items():
         kind, _, given, result = declared[name]

@@ -7,47 +7,44 @@ import os
 import re
 import shutil
 import subprocess
-from collections.abc import Iterator
+from collections.abc import Callable
+from functools import cache
 from pathlib import Path
 
 import pytest
 
 from polycnc.cli._calls import calls_command
-from polycnc.servers.calls import build_library, library_of, write_library
+from polycnc.servers.calls import build_library, library_of, missing_of, write_library
 from polycnc.servers.process import Machinery
 from support.c_library import Door, built
 from support.command import COMMAND, environment
-from support.facade_programs import SYSTEM, facade_says
+from support.facade_programs import C_PROGRAMS, COLLECTED, EXAMPLES, facade_says
 
-EXAMPLES = Path(__file__).parents[2] / "examples"
 WARNINGS = ("-Wall", "-Wextra", "-Werror", "-pedantic")
-PROGRAMS = {"fanuc": "fanuc_macro", "apci": "apci_jog", "imc": "imc_move"}
-SAID = {
-    "apci": "init 0, board 4, 3 axes\nat 12.500\n",
-    "imc": "adapters 0: 1\nopen 0\nmove 0\nat 6250, moving 0\nclose 0\n",
-}
 WINDOWS = {"win64": "x86_64-w64-mingw32-gcc", "win32": "i686-w64-mingw32-gcc"}
 ROOTS_OF_32 = ("/usr/lib/i386-linux-gnu/wine", "/usr/lib/wine/i386-windows", "/usr/lib/wine/wine")
+REFERENCE = "fanuc_macro"
 
 
-def _said(kind: str) -> str:
-    return SAID.get(kind) or facade_says()
+def _kind(name: str) -> str:
+    return name.partition("_")[0]
 
 
-def _linked(kind: str, folder: Path, to: Path, name: str = "") -> Path:
-    made = to / (name or PROGRAMS[kind])
-    source = EXAMPLES / "c" / f"{made.name}.c"
+def _linked(name: str, to: Path) -> Path:
+    kind, made = _kind(name), to / name
+    folder = built(kind)
     subprocess.run(
-        ["gcc", "-std=c11", *WARNINGS, "-I", folder, "-o", made, source, "-L", folder,
+        ["gcc", "-std=c11", *WARNINGS, "-I", folder, "-o", made, EXAMPLES / "c" / f"{name}.c", "-L", folder,
          f"-l{library_of(kind).name}", f"-Wl,-rpath,{folder}"], check=True,
     )  # fmt: skip
     return made
 
 
-def _run(place: str, *command: str | Path) -> str:
+def _run(place: str, *command: str | Path, given: str = "") -> str:
     ran = subprocess.run(
         command,
         env=environment(POLYCNC_CALLS=place, WINEDEBUG="-all"),
+        input=given,
         capture_output=True,
         text=True,
         timeout=60,
@@ -56,41 +53,31 @@ def _run(place: str, *command: str | Path) -> str:
     return ran.stdout
 
 
-@pytest.fixture(scope="module")
-def doors(tmp_path_factory: pytest.TempPathFactory) -> Iterator[dict[str, Door]]:
-    card = tmp_path_factory.mktemp("card") / "card.toml"
-    card.write_text("number_of_axes = 2\nready = true\n")
-    files = {"apci": SYSTEM, "imc": card}
-    made = {kind: Door((kind, Machinery(file=files.get(kind))), running=True) for kind in PROGRAMS}
-    yield made
-    for door in made.values():
+def _said(name: str, *command: str | Path) -> str:
+    """Run a program against a machine of its own."""
+    wanted = C_PROGRAMS[name]
+    door = Door((_kind(name), wanted.machinery), running=True)
+    try:
+        return _run(door.place, *command, given=wanted.given)
+    finally:
         door.close()
 
 
+FEW = [
+    pytest.param(name, marks=pytest.mark.long) if name.endswith(("gantry", "line_shaft")) else name
+    for name in C_PROGRAMS
+]
+"""Those that move for seconds are long."""
+
+
 @pytest.mark.covers("apci.lib.c")
-@pytest.mark.parametrize("kind", PROGRAMS)
-def test_a_program_links_and_says_what_it_has_to(kind: str, tmp_path: Path, doors: dict[str, Door]) -> None:
-    assert _run(doors[kind].place, _linked(kind, built(kind), tmp_path)) == _said(kind)
-
-
-LONGER = {
-    "fanuc_events": "mode 1, run 0, motion 0, emergency 0, alarm 0\n#500 = 3.0\n#501 = 1.0\n#502 = 0.0\n"
-    "too short 2\nfree 0\nfree again -8\n",
-    "apci_shaft": "init 0\nturn 1: at 20.000 10.000, mark passed 1 times\n"
-    "turn 2: at 30.000 12.500, mark passed 0 times\nturn 3: at 5.000 2.500, mark passed 1 times\nerrors 0\n",
-    "imc_contour": "open 0\nat 3000 6000\nerrors 0\nclose 0\n",
-}
-"""The slave of the shaft turns by 0.5, 0.25 and 0.4 of the master's 20, 10 and -25 mm."""
-
-
-@pytest.mark.parametrize("name", LONGER)
-def test_a_longer_program_says_what_it_has_to(name: str, tmp_path: Path, doors: dict[str, Door]) -> None:
-    kind = name.partition("_")[0]
-    assert _run(doors[kind].place, _linked(kind, built(kind), tmp_path, name)) == LONGER[name]
+@pytest.mark.parametrize("name", FEW)
+def test_a_program_links_and_says_what_it_has_to(name: str, tmp_path: Path) -> None:
+    assert _said(name, _linked(name, tmp_path)) == C_PROGRAMS[name].expected
 
 
 def test_a_program_against_the_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    program, trace = _linked("fanuc", built("fanuc"), tmp_path), tmp_path / "calls.jsonl"
+    program, trace = _linked(REFERENCE, tmp_path), tmp_path / "calls.jsonl"
     process = subprocess.Popen(
         [*COMMAND, "calls", "fanuc", "--port", "0", "--trace", trace],
         stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, env=environment(PYTHONUNBUFFERED="1"),
@@ -109,20 +96,27 @@ def test_a_program_against_the_command(tmp_path: Path, capsys: pytest.CaptureFix
     assert {**json.loads(lines[1]), "time_s": shown["time_s"]} == shown
 
 
-def test_a_collector_opens_anew_what_it_has_lost(tmp_path: Path) -> None:
-    folder, made = built("fanuc"), tmp_path / "collector"
-    subprocess.run(
-        ["gcc", "-std=c11", *WARNINGS, "-I", folder, "-o", made, EXAMPLES / "c" / "fanuc_collector.c",
-         "-L", folder, "-lfwlib32", f"-Wl,-rpath,{folder}"], check=True,
-    )  # fmt: skip
-    first = Door(("fanuc", Machinery(axes=2)))
+COLLECTORS = {
+    "fanuc": ("open {}", -16, -16, "free 0\n"),
+    "apci": ("init {}", -4, 31, ""),
+    "imc": ("open {}", 3, 5, "close 0\n"),
+}
+"""How each says that it opens, what it is told when it has lost its machine and when nobody is there, and its end."""
+
+
+@pytest.mark.parametrize("kind", COLLECTORS)
+def test_a_collector_opens_anew_what_it_has_lost(kind: str, tmp_path: Path) -> None:
+    opens, lost, nobody, end = COLLECTORS[kind]
+    made, told = _linked(f"{kind}_collector", tmp_path), COLLECTED[kind]
+    machinery = Machinery(axes=2) if kind == "fanuc" else C_PROGRAMS[f"{kind}_collector"].machinery
+    first = Door((kind, machinery))
     port = int(first.place.rpartition(":")[2])
     with subprocess.Popen(
         [made, "127.0.0.1", str(port)],
         stdin=subprocess.PIPE,
         stdout=subprocess.PIPE,
         text=True,
-        env=environment(),
+        env=environment(POLYCNC_CALLS=first.place),
     ) as program:
         assert program.stdin is not None
         assert program.stdout is not None
@@ -134,17 +128,16 @@ def test_a_collector_opens_anew_what_it_has_lost(tmp_path: Path) -> None:
             program.stdin.flush()
             return [program.stdout.readline().rstrip() for _ in range(lines)]
 
-        told = "mode 1, run 0, program 0, at 0 0, feed 0, alarms 0"
-        assert ask(2) == ["open 0", f"1: {told}"]
+        assert ask(2) == [opens.format(0), f"1: {told}"]
         assert ask(1) == [f"2: {told}"]
         first.close()
-        assert ask(1) == ["3: lost, -16"]
-        assert ask(1) == ["open -16"]
-        second = Door(("fanuc", Machinery(axes=2)), port=port)
+        assert ask(1) == [f"3: lost, {lost}"]
+        assert ask(1) == [opens.format(nobody)]
+        second = Door((kind, machinery), port=port)
         try:
-            assert ask(2) == ["open 0", f"4: {told}"]
+            assert ask(2) == [opens.format(0), f"4: {told}"]
             program.stdin.close()
-            assert program.stdout.read() == "free 0\n"
+            assert program.stdout.read() == end
             assert program.wait(20) == 0
         finally:
             second.close()
@@ -163,31 +156,42 @@ def test_the_tutorial_shows_the_program_and_what_it_prints() -> None:
     assert _shown("output") == facade_says()
 
 
+@pytest.fixture(scope="module")
+def windows_libraries(tmp_path_factory: pytest.TempPathFactory) -> Callable[[str, str], Path]:
+    @cache
+    def build(kind: str, target: str) -> Path:
+        folder = tmp_path_factory.mktemp(f"{kind}_{target}")
+        write_library(library_of(kind), folder)
+        build_library(library_of(kind), folder, target)
+        return folder
+
+    return build
+
+
 @pytest.mark.long
 @pytest.mark.parametrize("target", WINDOWS)
-@pytest.mark.parametrize("kind", PROGRAMS)
+@pytest.mark.parametrize("name", C_PROGRAMS)
 def test_the_same_program_as_a_windows_one(
-    kind: str, target: str, tmp_path: Path, doors: dict[str, Door]
+    name: str, target: str, windows_libraries: Callable[[str, str], Path]
 ) -> None:
     if shutil.which(WINDOWS[target]) is None:
         pytest.skip(f"no C compiler {WINDOWS[target]} here")
-    library = library_of(kind)
-    write_library(library, tmp_path)
-    build_library(library, tmp_path, target)
-    program = tmp_path / "client.exe"
-    source = EXAMPLES / "c" / f"{PROGRAMS[kind]}.c"
+    library, folder = library_of(_kind(name)), windows_libraries(_kind(name), target)
+    program = folder / f"{name}.exe"  # beside the DLL
+    source = EXAMPLES / "c" / f"{name}.c"
     subprocess.run(
-        [WINDOWS[target], "-std=c11", *WARNINGS, "-I", tmp_path, "-o", program, source,
-         tmp_path / f"{library.name}.lib", "-static-libgcc"], check=True,
+        [WINDOWS[target], "-std=c11", *WARNINGS, "-I", folder, "-o", program, source, folder / f"{library.name}.lib",
+         "-static-libgcc"], check=True,
     )  # fmt: skip
     dump = WINDOWS[target].replace("gcc", "objdump")
     imports = subprocess.run([dump, "-p", program], capture_output=True, text=True, check=True).stdout
     names = re.findall(r"\s(\w+(?:@\d+)?)$", imports.partition(f"{library.name}.dll")[2], re.MULTILINE)
     assert len(set(names) & set(library.functions)) >= 5
     assert not any("@" in name for name in names)
+    assert missing_of(program, library) == (sorted(set(names) & set(library.functions)), [])
     wine = os.environ.get("POLYCNC_WINE32", "wine") if target == "win32" else "wine"
     if shutil.which(wine) is None:
         pytest.skip("no wine here")
     if target == "win32" and wine == "wine" and not any(Path(each).exists() for each in ROOTS_OF_32):
         pytest.skip("no wine for programs of 32 bits here")
-    assert _run(doors[kind].place, wine, program) == _said(kind)
+    assert _said(name, wine, program) == C_PROGRAMS[name].expected

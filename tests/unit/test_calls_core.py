@@ -128,7 +128,7 @@ def test_a_hello_that_is_refused(said: bytes, answer: int | None, told: str) -> 
     "bad",
     [
         struct.pack("<I", 3) + b"abc",
-        struct.pack("<I", 65533) + b"abcd",
+        struct.pack("<I", 66557) + b"abcd",
         struct.pack("<I", 0xFFFFFFFF),
         struct.pack("<IHH", 4, 0, 1),
         struct.pack("<IHH", 4, 97, 1),

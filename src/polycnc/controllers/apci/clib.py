@@ -6,6 +6,7 @@ import ctypes
 from typing import Any
 
 from polycnc.controllers.apci import pcap
+from polycnc.controllers.apci.board._board_variables import COMMON_BUFFER_BYTES
 from polycnc.controllers.apci.board._codes import BootCode, InitCode, Status, Success
 from polycnc.controllers.apci.board._declared import HEADER
 from polycnc.controllers.apci.library._session import UNKNOWN_ERROR
@@ -26,6 +27,12 @@ TSRPX: Any = lay_out(
 _WITHOUT_A_PLACE = ("rdaux", "wraux", "rdlp", "wrlp", "rdlpndx", "wrlpndx", "rddv", "rdsdec", "wrsdec")
 _SERVED = "booting a served board would make another one than the one that is served; it answers 202"
 
+# The names of functions as the prints of the manual have them besides: programs may be linked by these.
+_PRINTED = {
+    "rdcbcnc": "rdcbcnct", "rdjtvI": "rdjtvl", "rdlsM": "rdlsm", "rdtrtv": "rdtrtvl", "wrbcnct": "wrcbcnct",
+    "wrjtvI": "wrjtvl", "wrppe": "wrrp", "wrtrtv": "wrtrtvl",
+}  # fmt: skip
+_MOST = COMMON_BUFFER_BYTES + 1
 _DECLARATIONS = """\
 typedef void(PC_CALL *InterruptRoutine)(int lines);
 
@@ -83,12 +90,18 @@ MCUG3 = CLibrary(
         **{(name, "tsrp"): "mcug3_records(as) * (int64_t)sizeof(TSRP)" for name in ("ja", "jhi", "jr")},
         **{(name, "spdbuf"): "(int64_t)size * 8" for name in ("spd", "spda", "spdr")},
         ("getEnvStr", "EnvStr"): "sizeof(CppString)",
+        # More than a buffer has is refused by its number, without a look at all of it.
+        **{
+            (name, "cbcnct_buffer"): f"!cbcnct ? 0 : cbcnct->size < {_MOST} ? cbcnct->size : {_MOST}"
+            for name in ("rdcbcnct", "wrcbcnct")
+        },
     },
     failures={
         "rdSampleTime": Success.FAILED,
         "rdslsp": Success.FAILED,
         "BootFile": BootCode.DEVICE_ADDRESSES,
     },
+    aliases=_PRINTED,
     left_out={"BootFile": _SERVED},
     interrupts=("MCUG3_SetBoardIntRoutine", "MCUG3_ResetBoardIntRoutine"),
 )

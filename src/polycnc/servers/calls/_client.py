@@ -20,7 +20,7 @@ _HEAD = struct.Struct("<IHH")
 _INTERRUPT = struct.Struct("<IHHi")
 _BEGIN = _HEAD.size
 _LEAST = _HEAD.size - _SIZE.size
-_MOST = 65536
+_MOST = 66_560
 _MOST_BEHIND = 4 * _MOST  # bytes that wait to be carried out
 _WIDTHS = (4, 8)
 

@@ -106,10 +106,10 @@ def _constants(library: CLibrary, language: _Language) -> Iterator[tuple[str, in
             yield name, value
 
 
-def _functions(library: CLibrary) -> Iterator[tuple[str, Function]]:
-    yield from sorted(
-        {**library.functions, **{a: library.functions[b] for a, b in library.aliases.items()}}.items()
-    )
+def _functions(library: CLibrary, language: _Language) -> Iterator[tuple[str, Function]]:
+    seen = set() if language.cases else {each.lower() for each in library.functions}
+    others = {a: library.functions[b] for a, b in library.aliases.items() if a.lower() not in seen}
+    yield from sorted({**library.functions, **others}.items())
 
 
 def _result(function: Function) -> Any:
@@ -152,7 +152,7 @@ def write_pascal(library: CLibrary) -> str:
                 f"      {number}: ({member}: {kind});" if _is_union(cls) else f"    {member}: {kind};"
             )
         lines += ["  end;", ""]
-    for each, function in _functions(library):
+    for each, function in _functions(library, language):
         names = language.names([argument.name for argument in function.arguments], taken)
         given = "; ".join(
             _pascal_argument(library, name, argument)
@@ -174,6 +174,8 @@ def _pascal_argument(library: CLibrary, name: str, argument: Argument) -> str:
     way, element = slot_of(library, argument)
     if isinstance(argument.type, Opaque):
         return f"{'' if way is Way.VALUE else 'var '}{name}: IMC_HANDLE"
+    if getattr(argument.type, "of", None) is callable:
+        return f"{name}: Pointer"
     if way is Way.VALUE:
         return f"{name}: {_PASCAL.of(element)}"
     if way is Way.TEXT:
@@ -197,7 +199,7 @@ def write_csharp(library: CLibrary) -> str:
     ]  # fmt: skip
     for cls in library.classes.values():
         lines += [*_csharp_structure(cls), ""]
-    for each, function in _functions(library):
+    for each, function in _functions(library, language):
         names = language.names([argument.name for argument in function.arguments], frozenset())
         given = ", ".join(
             _csharp_argument(library, argument_name, argument)
@@ -268,7 +270,7 @@ def write_basic(library: CLibrary) -> str:
     ]  # fmt: skip
     for cls in library.classes.values():
         lines += [*_basic_type(cls), ""]
-    for each, function in _functions(library):
+    for each, function in _functions(library, language):
         names = language.names([argument.name for argument in function.arguments], taken)
         given = ", ".join(
             _basic_argument(library, argument_name, argument)

@@ -207,7 +207,8 @@ def _slots(library: CLibrary, function: Function) -> Iterator[Slot]:
         way = Direction.IN if argument.direction is Direction.IN else Direction.OUT
         for name, each in held.items():
             behind = replace(argument, name=f"{argument.name}_{name}", direction=way, passed=False)
-            size = f"pc_size({argument.name} ? {argument.name}->{each.counted_by} : 0)"
+            said = library.extents.get((function.name, behind.name))
+            size = f"pc_size({said or f'{argument.name} ? {argument.name}->{each.counted_by} : 0'})"
             yield Slot(behind, Way.MEMORY, ctypes.c_char, size, size, argument.name, name)
 
 

@@ -23,10 +23,10 @@ def write_source(library: CLibrary, version: str, python: str = "") -> str:
 
     `python` is the interpreter of machines in the program's own process, "" where they are served.
     """
-    runtime = files(__package__).joinpath("runtime.c").read_text("utf-8")
+    carrier = _text("inside.c" if python else "sockets.c")
     by_name = {each.function.name: each for each in library.calls}
     listens = bool(library.interrupts) and not python
-    interrupts = files(__package__).joinpath("interrupts.c").read_text("utf-8") if listens else ""
+    interrupts = _text("interrupts.c") if listens else ""
     bodies = []
     for name, function in sorted(library.functions.items()):
         if name in library.interrupts:
@@ -43,13 +43,19 @@ def write_source(library: CLibrary, version: str, python: str = "") -> str:
     return "\n".join(
         (
             *_head(library, version, python),
-            runtime,
+            _text("common.c"),
+            carrier,
+            _text("runtime.c"),
             f'#include "{library.name}.h"\n',
             interrupts,
             library.helpers,
             *bodies,
         )
     )
+
+
+def _text(name: str) -> str:
+    return files(__package__).joinpath(name).read_text("utf-8")
 
 
 def _head(library: CLibrary, version: str, python: str) -> Iterator[str]:
@@ -125,7 +131,7 @@ def _row(slot: Slot, before: list[str], after: list[str]) -> str:
     opaque = isinstance(slot.argument.type, Opaque)
     if slot.way is Way.VALUE:
         if opaque:
-            before.append(f"    uint32_t {name}_ = (uint32_t)(uintptr_t){name};")
+            before.append(f"    uint32_t {name}_ = pc_opaque({name});")
             name += "_"
         return f"{{PC_VALUE, &{name}, {slot.width}, 0, 0}}"
     if opaque:

@@ -3,39 +3,14 @@
    the program is being carried out; calls that come meanwhile wait for its end, for a second at most, since it may wait
    for the program in turn. What the routine itself calls does not wait. */
 #ifdef _WIN32
-typedef CONDITION_VARIABLE pc_condition;
 typedef DWORD pc_thread;
-#define PC_UNCHANGED CONDITION_VARIABLE_INIT
-#define pc_wake(condition) WakeAllConditionVariable(condition)
 #define pc_me() GetCurrentThreadId()
 #define pc_same(one, other) ((one) == (other))
-
-static int pc_wait(pc_condition *changed, pc_lock *lock, int wait_ms)
-{
-    return SleepConditionVariableSRW(changed, lock, (DWORD)wait_ms, 0) != 0;
-}
 #else
 #include <signal.h>
-#include <time.h>
-typedef pthread_cond_t pc_condition;
 typedef pthread_t pc_thread;
-#define PC_UNCHANGED PTHREAD_COND_INITIALIZER
-#define pc_wake(condition) pthread_cond_broadcast(condition)
 #define pc_me() pthread_self()
 #define pc_same(one, other) pthread_equal(one, other)
-
-static int pc_wait(pc_condition *changed, pc_lock *lock, int wait_ms)
-{
-    struct timespec until;
-    clock_gettime(CLOCK_REALTIME, &until);
-    until.tv_sec += wait_ms / 1000;
-    until.tv_nsec += wait_ms % 1000 * 1000000L;
-    if (until.tv_nsec >= 1000000000L) {
-        until.tv_sec++;
-        until.tv_nsec -= 1000000000L;
-    }
-    return pthread_cond_timedwait(changed, lock, &until) == 0;
-}
 #endif
 
 #define PC_ROUTINE_MS 1000
@@ -85,8 +60,18 @@ static void pc_calls_end(int counted)
 }
 
 #ifndef _WIN32
+static void pc_line_enter(void)
+{
+    pc_enter(&pc_line.lock);
+}
+
+static void pc_line_leave(void)
+{
+    pc_leave(&pc_line.lock);
+}
+
 /* Have no routine and no thread, in a child of the process that had them. */
-static void pc_calls_forget(void)
+static void pc_line_forget(void)
 {
     pthread_mutex_init(&pc_line.lock, NULL);
     pthread_cond_init(&pc_line.changed, NULL);
@@ -135,7 +120,7 @@ static void pc_attend(int serial)
     if (socket == PC_NO_SOCKET)
         return;
     do {
-        if (!pc_receive(socket, frame, sizeof frame))
+        if (!pc_receive(socket, frame, sizeof frame, -1))
             break;
         memcpy(&lines, frame + 8, 4);
     } while (pc_call_routine(serial, lines));
@@ -203,47 +188,56 @@ static void pc_stop_routine(void)
     pc_leave(&pc_line.lock);
 }
 
+/* Have a connection, which nobody else finds, carry out a call; it goes to whoever called this. */
+static pc_socket pc_own_socket(uint16_t number, const pc_argument *given, int *code)
+{
+    char place[280] = "";
+    pc_result result = {0, 0, 0};
+    pc_socket made = PC_NO_SOCKET;
+    pc_link link;
+    int own;
+    pc_enter(&pc_all);
+    if (pc_default.number >= 0)
+        snprintf(place, sizeof place, "%s", pc_connections[pc_default.number].place);
+    own = pc_reserve("");
+    pc_leave(&pc_all);
+    *code = PC_CODE_LOST;
+    if (own < 0)
+        return made;
+    link = pc_try(own, place, PC_WAIT_MS, PC_CODE_LOST, code);
+    if (!*code)
+        *code = pc_exchange(link, number, given, 1, &result);
+    if (*code)
+        return made;
+    pc_enter(&pc_connections[own].lock);
+    made = pc_lose(&pc_connections[own]);
+    pc_leave(&pc_connections[own].lock);
+    if (result.whole) {
+        pc_shut(made);
+        *code = (int)result.whole;
+        return PC_NO_SOCKET;
+    }
+    pc_limit(made, -1);
+    return made;
+}
+
 /* Have a connection of its own for the interrupts of a board, and a thread that waits for them; 0, or why not. */
 static int pc_listen(InterruptRoutine routine, uint16_t number, int32_t what)
 {
-    pc_connection own;
     pc_argument given[1];
-    pc_result result = {0, 0, 0};
-    char place[280] = "";
+    pc_socket own;
     int code, serial, started = 1;
-#ifdef _WIN32
-    DWORD forever = 0;
-#else
-    struct timeval forever = {0, 0};
-#endif
-    memset(&own, 0, sizeof own);
-#ifdef _WIN32
-    InitializeSRWLock(&own.lock);
-#else
-    pthread_mutex_init(&own.lock, NULL);
-#endif
     given[0].what = PC_VALUE;
     given[0].from = &what;
     given[0].size = sizeof what;
     given[0].to = NULL;
     given[0].room = 0;
-    pc_enter(&pc_all);
-    if (pc_default >= 0)
-        snprintf(place, sizeof place, "%s", pc_connections[pc_default].place);
-    pc_leave(&pc_all);
-    code = pc_connect(&own, place, PC_WAIT_MS, PC_CODE_LOST);
-    if (!code)
-        code = pc_exchange(&own, number, given, 1, &result);
-    if (!code && result.whole) {
-        pc_shut(own.socket);
-        code = (int)result.whole;
-    }
+    own = pc_own_socket(number, given, &code);
     if (code)
         return code;
-    setsockopt(own.socket, SOL_SOCKET, SO_RCVTIMEO, (const void *)&forever, sizeof forever);
     pc_enter(&pc_line.lock);
     serial = ++pc_line.serial;
-    pc_line.socket = own.socket;
+    pc_line.socket = own;
     pc_line.number = number;
     pc_line.what = what;
     pc_line.routine = routine;
@@ -255,7 +249,7 @@ static int pc_listen(InterruptRoutine routine, uint16_t number, int32_t what)
             pc_line.socket = PC_NO_SOCKET;
         }
         pc_leave(&pc_line.lock);
-        pc_shut(own.socket);
+        pc_shut(own);
     }
     return started ? 0 : PC_CODE_LOST;
 }

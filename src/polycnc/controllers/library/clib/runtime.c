@@ -1,432 +1,123 @@
-/* What all functions below share: connections to the served machines, and calls over them. Sockets, nothing else.
+/* What all functions share: connections to the machines, and calls over them.
 
-   A call is a frame, its answer another one; both lie on the stack. Nothing is written into the program's memory before
-   the whole answer is here and every size in it has been checked. With PC_IN_PROCESS the machines are in this process,
-   in an interpreter of Python, and the same frames go to it. */
-#ifdef _WIN32
-#define _WIN32_WINNT 0x0600
-#include <winsock2.h>
-#include <ws2tcpip.h>
-#else
-#define _POSIX_C_SOURCE 200809L
-#define _DEFAULT_SOURCE 1
-#define _DARWIN_C_SOURCE 1
-#ifdef PC_IN_PROCESS
-#define PY_SSIZE_T_CLEAN
-#include <Python.h>
-#endif
-#include <errno.h>
-#include <fcntl.h>
-#include <netdb.h>
-#include <netinet/in.h>
-#include <netinet/tcp.h>
-#include <poll.h>
-#include <pthread.h>
-#include <sys/socket.h>
-#include <sys/time.h>
-#include <sys/types.h>
-#include <unistd.h>
-#endif
-#include <stdint.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-
-#if defined(__BYTE_ORDER__) && __BYTE_ORDER__ != __ORDER_LITTLE_ENDIAN__
-#error "the structures of this library are those of little-endian machines"
-#endif
-
-#define PC_MOST 65536u     /* bytes of a frame */
-#define PC_NULL 0xFFFFFFFFu /* the size of what a null pointer leads to */
-#define PC_WAIT_MS 10000   /* for an answer, where the program says nothing */
-#define PC_CONNECTIONS 64
-#define PC_HEAD 20u /* length, number, serial, state, result */
-
-#if defined(__GNUC__)
-#define PC_UNUSED __attribute__((unused))
-#else
-#define PC_UNUSED
-#endif
-
-#ifdef _WIN32
-typedef SOCKET pc_socket;
-typedef SRWLOCK pc_lock;
-#define PC_NO_SOCKET INVALID_SOCKET
-#define PC_UNLOCKED SRWLOCK_INIT
-#define pc_enter(lock) AcquireSRWLockExclusive(lock)
-#define pc_leave(lock) ReleaseSRWLockExclusive(lock)
-#define pc_shut(socket) closesocket(socket)
-#define PC_SEND_FLAGS 0
-#else
-typedef int pc_socket;
-typedef pthread_mutex_t pc_lock;
-#define PC_NO_SOCKET (-1)
-#define PC_UNLOCKED PTHREAD_MUTEX_INITIALIZER
-#define pc_enter(lock) pthread_mutex_lock(lock)
-#define pc_leave(lock) pthread_mutex_unlock(lock)
-#ifdef PC_IN_PROCESS
-static void pc_shut(pc_socket client);
-#else
-#define pc_shut(socket) close(socket)
-#endif
-#ifdef MSG_NOSIGNAL
-#define PC_SEND_FLAGS MSG_NOSIGNAL
-#else
-#define PC_SEND_FLAGS 0
-#endif
-#endif
-
+   A call is a frame, its answer another one; both lie in the memory of their connection, never on the program's stack.
+   Nothing is written into the program's memory before the whole answer is here and every size in it has been checked. */
 #if PC_INTERRUPTS
 static int pc_calls_begin(void);
 static void pc_calls_end(int counted);
 static void pc_listen_again(void);
 #ifndef _WIN32
-static void pc_calls_forget(void);
+static void pc_line_enter(void);
+static void pc_line_leave(void);
+static void pc_line_forget(void);
 #endif
 #else
 #define pc_calls_begin() 0
 #define pc_calls_end(counted) (void)(counted)
 #define pc_listen_again() (void)0
-#define pc_calls_forget() (void)0
+#define pc_line_enter() (void)0
+#define pc_line_leave() (void)0
+#define pc_line_forget() (void)0
 #endif
 
-enum { PC_VALUE, PC_READ, PC_WRITE, PC_BOTH };
-enum { PC_PLAIN, PC_THROUGH, PC_OPENS, PC_OPENS_AT, PC_FREES };
-enum { PC_FREE, PC_OPEN, PC_LOST };
+#define PC_SLICE_MS 50
 
-typedef struct {
-    int what;
-    const void *from; /* what is read */
-    uint32_t size;
-    void *to; /* what is written, and how much may be */
-    uint32_t room;
-} pc_argument;
-
-typedef struct {
-    int64_t whole;
-    double real;
-    int failed;
-} pc_result;
-
+/* `pc_all` is held for an instant and never while anything is waited for, the lock of a connection while a call is carried
+   out on it. `pc_all` may be entered while that one is held, never the other way round. */
 typedef struct {
     pc_lock lock;
-    int state;
+    int open; /* this and the next four are written with both locks held: either will do to read them */
     pc_socket socket;
+    uint32_t tries; /* to connect, that have ended: tells a connection from the one that was here before */
+    int wait_ms;
     uint16_t serial;
+    int reserved; /* somebody is connecting; from here on `pc_all` is held */
+    int code;     /* of the last try */
     int handles;
     char place[280];
 } pc_connection;
 
+/* A connection, by its number, as it was when it was found; -1: none. */
+typedef struct {
+    int number;
+    uint32_t tries;
+} pc_link;
+
 static pc_lock pc_all = PC_UNLOCKED;
+static pc_condition pc_tried = PC_UNCHANGED; /* a try to connect has ended */
 static pc_connection pc_connections[PC_CONNECTIONS];
-static int pc_ready, pc_default = -1;
-#ifndef _WIN32
-static pid_t pc_process;
-#endif
+static unsigned char pc_frames[PC_CONNECTIONS][PC_MOST];
+static pc_link pc_default = {-1, 0};
+static const pc_link pc_no_link = {-1, 0};
 #if PC_HANDLES
+#define PC_GONE 0xFF /* the number and 1 of a connection that was lost, and whose place another one has taken */
 static struct {
     uint8_t connection; /* its number and 1; 0: no handle of this program */
     uint16_t there;
 } pc_handles[0x10000];
 #endif
 
-/* How much of `size` bytes can be asked for: none of a negative number, never more than a frame holds. */
-PC_UNUSED static uint32_t pc_size(int64_t size)
+#ifdef _WIN32
+static void pc_begin(void) /* locks of zeros are free */
 {
-    return size < 0 ? 0 : size > (int64_t)PC_MOST ? PC_MOST : (uint32_t)size;
+    static LONG done;
+    WSADATA data;
+    if (!done) {
+        pc_enter(&pc_all);
+        if (!done)
+            WSAStartup(MAKEWORD(2, 2), &data);
+        InterlockedExchange(&done, 1);
+        pc_leave(&pc_all);
+    }
+}
+#else
+/* A fork waits until no other thread is in `pc_all`; its child has no connection, no handle and no lock of the parent's. */
+static void pc_fork_begins(void)
+{
+    pc_enter(&pc_all);
+    pc_line_enter();
 }
 
-PC_UNUSED static uint32_t pc_least(int64_t size, uint32_t other)
+static void pc_fork_is_done(void)
 {
-    return pc_size(size) < other ? pc_size(size) : other;
+    pc_line_leave();
+    pc_leave(&pc_all);
 }
 
-/* A text with its zero; a longer one is cut by the other side. */
-PC_UNUSED static uint32_t pc_text(const char *text)
-{
-    uint32_t size = 0;
-    while (text && size < 4096 && text[size])
-        size++;
-    return text ? size + (size < 4096) : 0;
-}
-
-static void pc_begin(void)
+static void pc_fork_begets(void)
 {
     int k;
-#ifdef _WIN32
-    WSADATA data;
-    if (pc_ready)
-        return;
-    WSAStartup(MAKEWORD(2, 2), &data);
+#ifdef PC_IN_PROCESS
+    pc_is_child = 1;
+#endif
     for (k = 0; k < PC_CONNECTIONS; k++)
-        InitializeSRWLock(&pc_connections[k].lock);
-#else
-    if (pc_ready && pc_process == getpid())
-        return;
-    if (pc_ready) { /* a child: the connections are its parent's */
-        for (k = 0; k < PC_CONNECTIONS; k++)
-            if (pc_connections[k].state == PC_OPEN)
-                pc_shut(pc_connections[k].socket);
-        pc_calls_forget();
-    }
+        if (pc_connections[k].open)
+            pc_shut(pc_connections[k].socket);
     memset(pc_connections, 0, sizeof pc_connections);
     for (k = 0; k < PC_CONNECTIONS; k++)
         pthread_mutex_init(&pc_connections[k].lock, NULL);
 #if PC_HANDLES
     memset(pc_handles, 0, sizeof pc_handles);
 #endif
-    pc_default = -1;
-    pc_process = getpid();
-#endif
-    pc_ready = 1;
+    pc_default = pc_no_link;
+    pthread_cond_init(&pc_tried, NULL);
+    pthread_mutex_init(&pc_all, NULL);
+    pc_line_forget();
 }
 
-#ifdef PC_IN_PROCESS
-static PyObject *pc_inside; /* what answers, once there is an interpreter */
-
-/* Have an interpreter, that of the program if it has one, and the machines in it; 0 if that fails. `pc_all` is held. */
-static int pc_python(void)
+static void pc_begin_once(void)
 {
-    PyGILState_STATE state;
-    PyObject *module;
-    if (pc_inside)
-        return 1;
-    if (!Py_IsInitialized()) {
-        const char *said = getenv("POLYCNC_PYTHON");
-        PyConfig config;
-        PyStatus status;
-        PyConfig_InitPythonConfig(&config);
-        config.install_signal_handlers = 0;
-        config.parse_argv = 0;
-        status = PyConfig_SetBytesString(&config, &config.program_name, said && *said ? said : PC_PYTHON);
-        if (!PyStatus_Exception(status))
-            status = Py_InitializeFromConfig(&config);
-        PyConfig_Clear(&config);
-        if (PyStatus_Exception(status))
-            return 0;
-        PyEval_SaveThread();
-    }
-    state = PyGILState_Ensure();
-    module = PyImport_ImportModule("polycnc.servers.inside");
-    pc_inside = module ? PyObject_CallMethod(module, "inside", "s", PC_NAME) : NULL;
-    Py_XDECREF(module);
-    PyErr_Clear();
-    PyGILState_Release(state);
-    return pc_inside != NULL;
+    int k;
+    for (k = 0; k < PC_CONNECTIONS; k++)
+        pthread_mutex_init(&pc_connections[k].lock, NULL);
+    pthread_atfork(pc_fork_begins, pc_fork_is_done, pc_fork_begets);
 }
 
-/* Let a client send bytes; how many came back, 0 if it has been ended or more than `most` came. */
-static uint32_t pc_exchanged(pc_socket client, const unsigned char *sent, uint32_t size, unsigned char *to, uint32_t most)
+static void pc_begin(void)
 {
-    PyGILState_STATE state = PyGILState_Ensure();
-    PyObject *got = PyObject_CallMethod(pc_inside, "receive", "iy#", client, (const char *)sent, (Py_ssize_t)size);
-    char *bytes = NULL;
-    Py_ssize_t length = 0;
-    if (!got || PyBytes_AsStringAndSize(got, &bytes, &length) || length > (Py_ssize_t)most)
-        length = 0;
-    if (length)
-        memcpy(to, bytes, (size_t)length);
-    Py_XDECREF(got);
-    PyErr_Clear();
-    PyGILState_Release(state);
-    return (uint32_t)length;
+    static pthread_once_t once = PTHREAD_ONCE_INIT;
+    pthread_once(&once, pc_begin_once);
 }
-
-static void pc_shut(pc_socket client)
-{
-    PyGILState_STATE state = PyGILState_Ensure();
-    Py_XDECREF(PyObject_CallMethod(pc_inside, "shut", "i", client));
-    PyErr_Clear();
-    PyGILState_Release(state);
-}
-
-static int pc_talk(pc_socket client, const unsigned char *sent, uint32_t size, unsigned char *answer, uint32_t expected)
-{
-    return pc_exchanged(client, sent, size, answer, expected) == expected;
-}
-
-static uint32_t pc_round(pc_socket client, unsigned char *frame, uint32_t size)
-{
-    uint32_t have = pc_exchanged(client, frame, size, frame, PC_MOST), said = 0;
-    if (have >= PC_HEAD)
-        memcpy(&said, frame, 4);
-    return have >= PC_HEAD && said == have - 4 ? have : 0;
-}
-
-#else
-static int pc_send(pc_socket socket, const unsigned char *bytes, uint32_t size)
-{
-    while (size) {
-        int sent = (int)send(socket, (const char *)bytes, (int)size, PC_SEND_FLAGS);
-#ifndef _WIN32
-        if (sent < 0 && errno == EINTR)
-            continue;
-#endif
-        if (sent <= 0)
-            return 0;
-        bytes += sent;
-        size -= (uint32_t)sent;
-    }
-    return 1;
-}
-
-/* Receive some bytes, at most so many; 0 if nothing more comes. */
-static uint32_t pc_some(pc_socket socket, unsigned char *bytes, uint32_t most)
-{
-    int got;
-#ifdef _WIN32
-    got = (int)recv(socket, (char *)bytes, (int)most, 0);
-#else
-    do
-        got = (int)recv(socket, (char *)bytes, most, 0);
-    while (got < 0 && errno == EINTR);
-#endif
-    return got > 0 ? (uint32_t)got : 0;
-}
-
-static int pc_receive(pc_socket socket, unsigned char *bytes, uint32_t size)
-{
-    uint32_t got;
-    for (; size; bytes += got, size -= got)
-        if (!(got = pc_some(socket, bytes, size)))
-            return 0;
-    return 1;
-}
-
-/* Receive an answer, mostly in one go, since nothing follows it; its size, 0 if it is none. */
-static uint32_t pc_answer(pc_socket socket, unsigned char *frame)
-{
-    uint32_t have = 0, size = PC_HEAD, got;
-    while (have < size) {
-        if (!(got = pc_some(socket, frame + have, PC_MOST - have)))
-            return 0;
-        have += got;
-        if (have >= 4) {
-            memcpy(&size, frame, 4);
-            if (size < PC_HEAD - 4 || size > PC_MOST - 4)
-                return 0;
-            size += 4;
-        }
-    }
-    return have == size ? size : 0;
-}
-
-/* Send bytes and receive so many; 0 if nothing more comes. */
-static int pc_talk(pc_socket socket, const unsigned char *sent, uint32_t size, unsigned char *answer, uint32_t expected)
-{
-    return pc_send(socket, sent, size) && pc_receive(socket, answer, expected);
-}
-
-/* Send a frame and receive its answer into its place; its size, 0 if it is none. */
-static uint32_t pc_round(pc_socket socket, unsigned char *frame, uint32_t size)
-{
-    return pc_send(socket, frame, size) ? pc_answer(socket, frame) : 0;
-}
-
-/* Connect within a time, and let no later wait take longer; -1: for ever. */
-static pc_socket pc_reach(const struct addrinfo *there, int wait_ms)
-{
-    pc_socket made = socket(there->ai_family, there->ai_socktype, there->ai_protocol);
-    int done, error = 0, yes = 1;
-    socklen_t size = sizeof error;
-    if (made == PC_NO_SOCKET)
-        return made;
-#ifdef _WIN32
-    {
-        u_long on = 1, off = 0;
-        DWORD limit = wait_ms < 0 ? 0 : (DWORD)wait_ms;
-        fd_set written, failed;
-        struct timeval wait;
-        wait.tv_sec = wait_ms / 1000;
-        wait.tv_usec = wait_ms % 1000 * 1000;
-        ioctlsocket(made, FIONBIO, &on);
-        done = connect(made, there->ai_addr, (int)there->ai_addrlen) == 0;
-        if (!done && WSAGetLastError() == WSAEWOULDBLOCK) {
-            FD_ZERO(&written);
-            FD_ZERO(&failed);
-            FD_SET(made, &written);
-            FD_SET(made, &failed);
-            done = select(0, NULL, &written, &failed, wait_ms < 0 ? NULL : &wait) == 1 && FD_ISSET(made, &written);
-        }
-        ioctlsocket(made, FIONBIO, &off);
-        setsockopt(made, SOL_SOCKET, SO_RCVTIMEO, (const char *)&limit, sizeof limit);
-        setsockopt(made, SOL_SOCKET, SO_SNDTIMEO, (const char *)&limit, sizeof limit);
-    }
-#else
-    {
-        int flags = fcntl(made, F_GETFL, 0);
-        struct pollfd asked;
-        struct timeval limit;
-        limit.tv_sec = wait_ms < 0 ? 0 : wait_ms / 1000;
-        limit.tv_usec = wait_ms < 0 ? 0 : wait_ms % 1000 * 1000;
-        asked.fd = made;
-        asked.events = POLLOUT;
-        asked.revents = 0;
-        fcntl(made, F_SETFD, FD_CLOEXEC);
-        fcntl(made, F_SETFL, flags | O_NONBLOCK);
-        done = connect(made, there->ai_addr, there->ai_addrlen) == 0;
-        if (!done && (errno == EINPROGRESS || errno == EINTR)) {
-            int found;
-            do
-                found = poll(&asked, 1, wait_ms);
-            while (found < 0 && errno == EINTR);
-            done = found == 1;
-        }
-        fcntl(made, F_SETFL, flags);
-        setsockopt(made, SOL_SOCKET, SO_RCVTIMEO, &limit, sizeof limit);
-        setsockopt(made, SOL_SOCKET, SO_SNDTIMEO, &limit, sizeof limit);
-#ifdef SO_NOSIGPIPE
-        setsockopt(made, SOL_SOCKET, SO_NOSIGPIPE, &yes, sizeof yes);
-#endif
-    }
-#endif
-    if (done && getsockopt(made, SOL_SOCKET, SO_ERROR, (void *)&error, &size) == 0 && !error) {
-        setsockopt(made, IPPROTO_TCP, TCP_NODELAY, (const void *)&yes, sizeof yes);
-        return made;
-    }
-    pc_shut(made);
-    return PC_NO_SOCKET;
-}
-
-#endif
-
-/* Say who calls; 0, or the code that the other side refuses it with, or `nobody` if there is none. */
-static int pc_greet(pc_socket socket, int nobody)
-{
-    unsigned char hello[PC_HELLO_SIZE], answer[12];
-    int32_t code;
-    memset(hello, 0, sizeof hello);
-    memcpy(hello, "PNCCALL1", 8);
-    hello[8] = (unsigned char)sizeof(void *);
-    hello[9] = PC_PACKING;
-    memcpy(hello + 12, PC_NAME, sizeof PC_NAME - 1);
-    memcpy(hello + 28, PC_VERSION, sizeof PC_VERSION - 1);
-    memcpy(hello + 44, pc_table, sizeof pc_table);
-    if (!pc_talk(socket, hello, sizeof hello, answer, sizeof answer))
-        return nobody;
-    if (memcmp(answer, "PNCCALL1", 8))
-        return nobody;
-    memcpy(&code, answer + 8, 4);
-    return (int)code;
-}
-
-#ifndef PC_IN_PROCESS
-/* Split host:port, [host]:port or host; 0 if it is too long. */
-static int pc_split(const char *place, char *host, size_t room, char *port, size_t port_room)
-{
-    const char *colon = strrchr(place, ':'), *begin = place, *end = colon ? colon : place + strlen(place);
-    if (*begin == '[' && end > begin + 1 && end[-1] == ']') {
-        begin++;
-        end--;
-    }
-    if ((size_t)(end - begin) >= room || end == begin)
-        return 0;
-    memcpy(host, begin, (size_t)(end - begin));
-    host[end - begin] = 0;
-    snprintf(port, port_room, "%s", colon && colon[1] ? colon + 1 : PC_PORT);
-    return 1;
-}
-
 #endif
 
 /* Read the line calls = "host:port" of polycnc.toml beside the program. */
@@ -472,94 +163,162 @@ static void pc_where(char *place, size_t room)
         snprintf(place, room, "127.0.0.1:" PC_PORT);
 }
 
-#ifdef PC_IN_PROCESS
-/* Connect to the machines in this process; every place is a client of its own. */
-static int pc_connect(pc_connection *made, const char *place, int wait_ms, int nobody)
+/* The number of the connection that is open or being opened to a place, -1 if there is none. `pc_all` is held. */
+static int pc_find(const char *place)
 {
-    static pc_socket last;
-    int code;
-    (void)wait_ms;
-    if (!pc_python())
-        return nobody;
-    code = pc_greet(++last, nobody);
-    if (code) {
-        pc_shut(last);
-        return code;
-    }
-    made->socket = last;
-    made->state = PC_OPEN;
-    made->serial = 0;
-    snprintf(made->place, sizeof made->place, "%s", place);
-    return 0;
-}
-
-#else
-/* Connect to a place; 0 and an open connection, or the code why not. */
-static int pc_connect(pc_connection *made, const char *place, int wait_ms, int nobody)
-{
-    struct addrinfo asked, *found = NULL, *each;
-    char host[260], port[16];
-    int code = nobody;
-    memset(&asked, 0, sizeof asked);
-    asked.ai_socktype = SOCK_STREAM;
-    if (!pc_split(place, host, sizeof host, port, sizeof port) || getaddrinfo(host, port, &asked, &found))
-        return nobody;
-    for (each = found; each; each = each->ai_next) {
-        pc_socket reached = pc_reach(each, wait_ms);
-        if (reached == PC_NO_SOCKET)
-            continue;
-        code = pc_greet(reached, nobody);
-        if (code) {
-            pc_shut(reached);
-            break;
-        }
-        made->socket = reached;
-        made->state = PC_OPEN;
-        made->serial = 0;
-        snprintf(made->place, sizeof made->place, "%s", place);
-        break;
-    }
-    freeaddrinfo(found);
-    return code;
-}
-
-#endif
-
-/* Return the number of an open connection to a place; *code says why there is none (-1). `pc_all` is held. */
-static int pc_open(const char *place, int wait_ms, int nobody, int *code)
-{
-    int k, empty = -1;
+    int k, found = -1;
     for (k = 0; k < PC_CONNECTIONS; k++) {
-        pc_connection *each = &pc_connections[k];
-        if (each->state == PC_OPEN && !strcmp(each->place, place))
-            return k;
-        if (empty < 0 && each->state != PC_OPEN && !each->handles)
-            empty = k;
+        const pc_connection *each = &pc_connections[k];
+        if ((each->open || each->reserved) && !strcmp(each->place, place) && (found < 0 || each->open))
+            found = k;
     }
-    *code = nobody;
-    if (empty < 0)
-        return -1;
-    pc_enter(&pc_connections[empty].lock);
-    *code = pc_connect(&pc_connections[empty], place, wait_ms, nobody);
-    pc_leave(&pc_connections[empty].lock);
-    return *code ? -1 : empty;
+    return found;
 }
 
-/* The connection of calls without a handle; a lost one comes back with a call that opens. `pc_all` is held. */
-static int pc_usual(int opens, int *code)
+/* Take a place for a connection, at best one that no handle leads to; -1 if all are open. `pc_all` is held. */
+static int pc_reserve(const char *place)
+{
+    int k, found = -1;
+    for (k = 0; k < PC_CONNECTIONS; k++) {
+        const pc_connection *each = &pc_connections[k];
+        if (!each->open && !each->reserved && (found < 0 || each->handles < pc_connections[found].handles))
+            found = k;
+    }
+    if (found < 0)
+        return found;
+#if PC_HANDLES
+    if (pc_connections[found].handles)
+        for (k = 0; k < 0x10000; k++)
+            if (pc_handles[k].connection == found + 1)
+                pc_handles[k].connection = PC_GONE;
+#endif
+    pc_connections[found].handles = 0;
+    pc_connections[found].reserved = 1;
+    snprintf(pc_connections[found].place, sizeof pc_connections[found].place, "%s", place);
+    return found;
+}
+
+/* Tell everybody how a try to connect has ended. */
+static pc_link pc_publish(int number, pc_socket socket, int wait_ms, int code)
+{
+    pc_connection *on = &pc_connections[number];
+    pc_link made;
+    pc_enter(&on->lock);
+    pc_enter(&pc_all);
+    on->open = !code;
+    on->socket = socket;
+    on->wait_ms = wait_ms;
+    on->serial = 0;
+    on->code = code;
+    on->reserved = 0;
+    made.number = code ? -1 : number;
+    made.tries = ++on->tries;
+    pc_wake(&pc_tried);
+    pc_leave(&pc_all);
+    pc_leave(&on->lock);
+    return made;
+}
+
+/* Give a connection up, and its socket to the caller. The lock of the connection is held. */
+static pc_socket pc_lose(pc_connection *on)
+{
+    pc_enter(&pc_all);
+    on->open = 0;
+    pc_leave(&pc_all);
+    return on->socket;
+}
+
+/* Connect, while `pc_all` is free for the calls of other threads. */
+static pc_link pc_try(int number, const char *place, int wait_ms, int nobody, int *code)
+{
+    pc_socket made = pc_connect(place, wait_ms, nobody, code);
+    return pc_publish(number, made, wait_ms, *code);
+}
+
+/* A connection to a place, the one that there is or a new one; *code says why there is none. Of a thread that is connecting
+   to this place, the outcome is waited for. */
+static pc_link pc_open(const char *place, int wait_ms, int nobody, int *code)
+{
+    pc_link made = pc_no_link;
+    int k, left_ms = wait_ms;
+    *code = nobody;
+    pc_enter(&pc_all);
+    while ((k = pc_find(place)) >= 0 && pc_connections[k].reserved) {
+        const pc_connection *on = &pc_connections[k];
+        uint32_t before = on->tries;
+        while (on->reserved && on->tries == before && left_ms)
+            if (!pc_wait(&pc_tried, &pc_all, PC_SLICE_MS) && left_ms > 0)
+                left_ms = left_ms > PC_SLICE_MS ? left_ms - PC_SLICE_MS : 0;
+        if (!left_ms || (on->tries == before + 1 && on->code)) {
+            if (left_ms)
+                *code = on->code;
+            pc_leave(&pc_all);
+            return made;
+        }
+    }
+    if (k >= 0) {
+        made.number = k;
+        made.tries = pc_connections[k].tries;
+        *code = 0;
+    } else if ((k = pc_reserve(place)) >= 0) {
+        pc_leave(&pc_all);
+        return pc_try(k, place, wait_ms, nobody, code);
+    }
+    pc_leave(&pc_all);
+    return made;
+}
+
+/* The connection of calls without a handle; a lost one comes back with a call that opens. */
+static pc_link pc_usual(int opens, int *code)
 {
     char place[280];
-    int made;
-    if (pc_default >= 0 && pc_connections[pc_default].state == PC_OPEN)
-        return pc_default;
-    if (pc_default >= 0 && !opens) {
+    pc_link made;
+    int is_there;
+    pc_enter(&pc_all);
+    made = pc_default;
+    is_there = made.number >= 0 && pc_connections[made.number].open && pc_connections[made.number].tries == made.tries;
+    pc_leave(&pc_all);
+    if (is_there)
+        return made;
+    if (made.number >= 0 && !opens) {
         *code = PC_CODE_LOST;
-        return -1;
+        return pc_no_link;
     }
     pc_where(place, sizeof place);
     made = pc_open(place, PC_WAIT_MS, opens ? PC_CODE_NOBODY : PC_CODE_LOST, code);
-    if (made >= 0)
+    if (made.number >= 0) {
+        pc_enter(&pc_all);
         pc_default = made;
+        pc_leave(&pc_all);
+    }
+    return made;
+}
+
+/* Tell whether a connection is there still; one that the other side has ended is shut. */
+static int pc_is_live(pc_link link)
+{
+    pc_connection *on = &pc_connections[link.number];
+    int live;
+    pc_enter(&on->lock);
+    live = on->open && on->tries == link.tries;
+    if (live && pc_ended(on->socket)) {
+        pc_shut(pc_lose(on));
+        live = 0;
+    }
+    pc_leave(&on->lock);
+    return live;
+}
+
+/* The connection of a call that opens, the usual one without a place: a new one if that of before has been ended. */
+static pc_link pc_opened(const char *place, int wait_ms, int *code)
+{
+    pc_link made;
+    int tries;
+    for (tries = 0; tries < 2; tries++) {
+        made = place ? pc_open(place, wait_ms, PC_CODE_LOST, code) : pc_usual(1, code);
+        if (made.number < 0 || pc_is_live(made))
+            break;
+    }
     return made;
 }
 
@@ -593,7 +352,7 @@ static uint32_t pc_pack(unsigned char *frame, uint16_t number, uint16_t serial, 
                 at = pc_put(frame, at, each->from, size);
         }
         if (each->what != PC_READ) {
-            size = each->to ? each->room : PC_NULL;
+            size = !each->to ? PC_NULL : each->room > PC_MOST_ROOM ? PC_MOST_ROOM : each->room;
             at = pc_put(frame, at, &size, 4);
         }
     }
@@ -638,21 +397,22 @@ static int pc_unpack(const unsigned char *frame, uint32_t size, const pc_argumen
 }
 
 /* Carry out a call on a connection; 0, or the code why it was not. */
-static int pc_exchange(pc_connection *on, uint16_t number, const pc_argument *given, int count, pc_result *result)
+static int pc_exchange(pc_link link, uint16_t number, const pc_argument *given, int count, pc_result *result)
 {
-    unsigned char frame[PC_MOST];
+    pc_connection *on = &pc_connections[link.number];
+    unsigned char *frame = pc_frames[link.number];
     uint32_t size;
     uint16_t heard[2];
     int code = PC_CODE_LOST;
     pc_enter(&on->lock);
-    if (on->state == PC_OPEN) {
+    if (on->open && on->tries == link.tries) {
         uint16_t serial = ++on->serial;
         size = pc_pack(frame, number, serial, given, count);
         if (!size) {
             pc_leave(&on->lock);
             return PC_CODE_NULL;
         }
-        if ((size = pc_round(on->socket, frame, size)) != 0) {
+        if ((size = pc_round(on->socket, frame, size, on->wait_ms)) != 0) {
             memcpy(heard, frame + 4, 4);
             if (heard[0] == number && heard[1] == serial && pc_unpack(frame, size, given, count)) {
                 memcpy(&result->whole, frame + 12, 8);
@@ -660,10 +420,8 @@ static int pc_exchange(pc_connection *on, uint16_t number, const pc_argument *gi
                 code = 0;
             }
         }
-        if (code) {
-            pc_shut(on->socket);
-            on->state = PC_LOST;
-        }
+        if (code)
+            pc_shut(pc_lose(on));
     }
     pc_leave(&on->lock);
     return code;
@@ -698,10 +456,9 @@ static uint16_t pc_name(int connection, uint16_t there)
 static void pc_forget(uint16_t handle)
 {
     pc_enter(&pc_all);
-    if (pc_handles[handle].connection) {
+    if (pc_handles[handle].connection && pc_handles[handle].connection != PC_GONE)
         pc_connections[pc_handles[handle].connection - 1].handles--;
-        pc_handles[handle].connection = 0;
-    }
+    pc_handles[handle].connection = 0;
     pc_leave(&pc_all);
 }
 
@@ -710,17 +467,22 @@ static pc_result pc_through(uint16_t number, int way, pc_argument *given, int co
 {
     uint16_t handle, there;
     pc_result result = {0, 0, 0};
-    int connection, code;
+    pc_link link = {-1, 0};
+    int connection, code = PC_CODE_LOST;
     memcpy(&handle, given[0].from, 2);
     pc_enter(&pc_all);
-    pc_begin();
-    connection = pc_handles[handle].connection - 1;
+    connection = pc_handles[handle].connection;
     there = pc_handles[handle].there;
+    if (connection && connection != PC_GONE) {
+        link.number = connection - 1;
+        link.tries = pc_connections[link.number].tries;
+    }
     pc_leave(&pc_all);
-    if (connection < 0)
+    if (!connection)
         return pc_coded(PC_CODE_HANDLE);
     given[0].from = &there;
-    code = pc_exchange(&pc_connections[connection], number, given, count, &result);
+    if (link.number >= 0)
+        code = pc_exchange(link, number, given, count, &result);
     if (way == PC_FREES && (code || !result.whole)) {
         pc_forget(handle);
         return pc_coded(0); /* what was lost is let go too */
@@ -734,12 +496,11 @@ static pc_result pc_opening(uint16_t number, int way, pc_argument *given, int co
     pc_argument *last = &given[count - 1];
     uint16_t *to = (uint16_t *)last->to, there = 0, here;
     pc_result result = {0, 0, 0};
-    int connection, code = 0;
+    pc_link link = {-1, 0};
+    int code = 0, is_here;
     if (!to)
         return pc_coded(PC_CODE_NULL);
     last->to = &there;
-    pc_enter(&pc_all);
-    pc_begin();
     if (way == PC_OPENS_AT) {
         char place[280];
         uint16_t port;
@@ -747,25 +508,24 @@ static pc_result pc_opening(uint16_t number, int way, pc_argument *given, int co
         memcpy(&port, given[1].from, 2);
         memcpy(&wait_s, given[2].from, 4);
         code = given[0].from ? PC_CODE_LOST : PC_CODE_NULL;
-        connection = -1;
         if (given[0].from && wait_s >= 0 && port && given[0].size <= 256) {
             const char *name = (const char *)given[0].from;
             snprintf(place, sizeof place, strchr(name, ':') ? "[%s]:%u" : "%s:%u", name, (unsigned)port);
-            connection = pc_open(place, wait_s ? wait_s > 600 ? 600000 : wait_s * 1000 : -1, PC_CODE_LOST, &code);
+            link = pc_opened(place, wait_s ? wait_s > 600 ? 600000 : wait_s * 1000 : -1, &code);
         }
     } else
-        connection = pc_usual(1, &code);
-    pc_leave(&pc_all);
-    if (connection < 0)
+        link = pc_opened(NULL, 0, &code);
+    if (link.number < 0)
         return pc_coded(code);
-    code = pc_exchange(&pc_connections[connection], number, given, count, &result);
+    code = pc_exchange(link, number, given, count, &result);
     if (code || result.whole)
         return code ? pc_coded(code) : result;
     pc_enter(&pc_all);
-    here = pc_name(connection, there);
+    is_here = pc_connections[link.number].tries == link.tries;
+    here = is_here ? pc_name(link.number, there) : 0;
     pc_leave(&pc_all);
     if (!here)
-        return pc_coded(PC_CODE_HANDLE);
+        return pc_coded(is_here ? PC_CODE_HANDLE : PC_CODE_LOST);
     memcpy(to, &here, sizeof here);
     return result;
 }
@@ -774,20 +534,19 @@ static pc_result pc_opening(uint16_t number, int way, pc_argument *given, int co
 static pc_result pc_call(uint16_t number, int way, pc_argument *given, int count)
 {
     pc_result result = {0, 0, 0};
-    int connection, code = 0;
+    pc_link link;
+    int code = 0;
+    pc_begin();
 #if PC_HANDLES
     if (way == PC_THROUGH || way == PC_FREES)
         return pc_through(number, way, given, count);
     if (way == PC_OPENS || way == PC_OPENS_AT)
         return pc_opening(number, way, given, count);
 #endif
-    pc_enter(&pc_all);
-    pc_begin();
-    connection = pc_usual(way == PC_OPENS, &code);
-    pc_leave(&pc_all);
-    if (connection >= 0) {
+    link = way == PC_OPENS ? pc_opened(NULL, 0, &code) : pc_usual(0, &code);
+    if (link.number >= 0) {
         int counted = pc_calls_begin();
-        code = pc_exchange(&pc_connections[connection], number, given, count, &result);
+        code = pc_exchange(link, number, given, count, &result);
         pc_calls_end(counted);
         if (way == PC_OPENS && !code && !result.whole)
             pc_listen_again();
