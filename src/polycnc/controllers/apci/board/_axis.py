@@ -44,6 +44,13 @@ _STATUS_BITS = tuple(
         ),
     )
 )
+# Where the signals of an encoder are kept.
+_SIGNALS = (
+    (int(Digi.index), "index_now"),
+    (int(Digi.encoder_error), "encoder_error"),
+    (int(Digi.index_latched), "index_seen"),
+    (int(Digi.strobe_latched), "strobe_seen"),
+)
 
 
 class Axis:
@@ -300,14 +307,13 @@ class Axis:
     @property
     def digi(self) -> Digi:
         """Digital inputs, and the encoder signals of this axis; reading leaves the latched bits (see rdigi)."""
-        row = self.row
-        signals = {
-            Digi.index: row["index_now"],
-            Digi.encoder_error: row["encoder_error"],
-            Digi.index_latched: row["index_seen"],
-            Digi.strobe_latched: row["strobe_seen"],
-        }
-        return Digi(self._inputs() | self.alarms | sum(bit for bit, value in signals.items() if value))
+        signals = sum(bit for bit, name in _SIGNALS if self.row[name])
+        return Digi(self._inputs() | self.alarms | signals)
+
+    def reset_signals(self) -> None:
+        """Reset the signals of the encoder, bits 16 to 19 of digi (Manual 002, 4.4.72)."""
+        for _, name in _SIGNALS:
+            self.row[name] = 0
 
     @property
     def relay(self) -> bool:

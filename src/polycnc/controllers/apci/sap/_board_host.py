@@ -110,8 +110,7 @@ def _clear_ci99(board: Board, _: Call) -> None:
 
 def _rdigi(board: Board, call: Call) -> None:
     for i in call.axes:
-        row = board.state.axis[i]
-        row["index_seen"] = row["strobe_seen"] = row["encoder_error"] = row["index_now"] = 0
+        board.axes[i].reset_signals()
 
 
 def _rifs(board: Board, _: Call) -> None:
