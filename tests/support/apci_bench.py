@@ -11,6 +11,8 @@ from collections.abc import Callable, Iterator, Mapping
 from itertools import pairwise, zip_longest
 from typing import Any
 
+import numpy as np
+
 from polycnc.controllers.apci import pcap, sap
 from polycnc.controllers.apci.board._board import Board
 from polycnc.controllers.apci.board._system_file import parse_system_file
@@ -24,6 +26,27 @@ _NOT_READ = {
     "rdap",
     "rdepc",
 }  # they reset something, read all, or read nothing that a board does
+_OF_RECORD = (
+    *(
+        "jac",
+        "jvl",
+        "hac",
+        "hvl",
+        "jovr",
+        "rp",
+        "dp",
+        "tp",
+        "sll",
+        "slr",
+        "ipw",
+        "mpe",
+        "gf",
+        "mcp",
+        "axst",
+        "lsm",
+    ),
+    *("digi", "digo", "ifs", "kp", "ki", "kd", "kpl", "kfca", "kfcv"),
+)
 _FIRST = 300  # common double in which the program keeps what it reads
 _QUALIFIERS = [each.name for each in AXIS_QUALIFIERS.values() if not each.indexed and each.name != "lp"]
 _SYSTEM = [each.name for each in SYSTEM_VARIABLES.values() if not each.indexed]
@@ -154,6 +177,22 @@ class Bench:
             self.board.advance(every)
             self._note()
         self.ends.append(len(self.tracks["rdErrorReg"]))
+        for an in range(len(self.board.axes)):
+            self._compare(an)
+
+    def _compare(self, an: int) -> None:
+        """Look whether rdap and the functions for single bits tell the same as those for one register."""
+        pcap.rdap(record := pcap.TSRP(an=an))
+        last = {
+            name.split()[0][2:]: values[-1] for name, values in self.tracks.items() if name.endswith(f" {an}")
+        }
+        last |= {name[2:]: last[name] for name in last if name.startswith("f.")}
+        for name in _OF_RECORD:
+            assert (name, getattr(record, name)) == (name, last[name])
+        assert record.jtv == last["jtvl"]
+        for name in ("axst", "digi", "digo", "ifs"):
+            bit = getattr(pcap, f"rd{name}b")
+            assert sum(bit(an, number) << number - 1 for number in range(1, 33)) == last[name]
 
     def _note(self) -> None:
         def note(name: str, value: float) -> None:
@@ -167,7 +206,9 @@ class Bench:
             if owner == "board":
                 note(name, read(0))
         state, tasks = self.board.state, [pcap.CNCTS() for _ in range(4)]
-        for letter, variables in (("I", state.ci), ("D", state.cd[:_FIRST])):
+        pcap.rdci(1000, whole := pcap.CIBUF())
+        pcap.rdcd(1000, real := pcap.CDBUF())
+        for letter, variables in (("I", np.array(whole.ci)), ("D", np.array(real.cd[:_FIRST]))):
             for k in variables.nonzero()[0]:
                 self.tracks.setdefault(f"C{letter}{k}", [0.0] * (len(self.tracks["rdErrorReg"]) - 1))
             for name in [each for each in self.tracks if each.startswith(f"C{letter}")]:
