@@ -400,13 +400,13 @@ def test_rdigi_resets_the_latched_signals_of_its_axis(pc: Pc) -> None:
     pc.close(0)
     go(pc, 0, 10.0)  # over the index at 4
     pc.board.set_input(14, True)  # the strobe of axis 0
-    pc.board.state.axis[0]["encoder_error"] = 1
+    pc.board.state.axis[0]["signals"] |= Digi.encoder_error
     pc.board.advance(2)
     assert [pcap.rddigib(0, bit) for bit in (18, 19, 20)] == [1, 1, 1]
     assert [pcap.rddigib(2, bit) for bit in (18, 19, 20)] == [0, 0, 0]
-    pc.board.state.axis["index_now"][:2] = 1  # in this scan
+    pc.board.state.axis["signals"][:2] |= int(Digi.index)  # in this scan
     pcap.rdigi(pcap.TSRP(an=0))
-    assert list(pc.board.state.axis["index_now"][:2]) == [0, 1]
+    assert list(pc.board.state.axis["signals"][:2]) == [0, Digi.index]
     assert [pcap.rddigib(0, bit) for bit in (17, 18, 19, 20)] == [0, 0, 0, 0]
     pcap.rddigi(record := pcap.TSRP(an=0))
     assert record.digi & (Digi.encoder_error | Digi.index_latched | Digi.strobe_latched) == 0

@@ -369,13 +369,21 @@ def searches(b: Bench) -> None:
     for number in (14, 15, 16):
         b.board.set_input(number, True)
     b.board.set_input(3, False)
-    b.board.state.axis[2]["encoder_error"] = 1
+    b.board.state.axis[2]["signals"] |= 0x20000
     b.step(80)
     for an in (0, 1, 2):
         record = pcap.TSRP(an=an)
         pcap.rdlp(record)
         b.wraux(an, record.lp)
     b.rdigi(2)
+    b.jr({0: 4.0, 2: -3.0})
+    b.step(10)
+    b.board.set_input(3, True)
+    b.step(10)
+    for an in (0, 2):
+        record = pcap.TSRP(an=an)
+        pcap.rdlp(record)
+        b.wrAxVarDbl(an, 3, record.lp)
     b.board.set_input(15, False)
     b.step(30)
 
@@ -412,6 +420,10 @@ def moves(b: Bench) -> None:
     b.step(20)
     b.mcr((1, 0), (400.0, 30.0, 0.0), 145.0, 0.5, 0.25)
     b.step(110, 10)
+    b.mcr((1, 0), (400.0, 9.0, 14.0), 20.0, 0.5, 0.25)
+    b.step(60, 10)
+    b.js(0, 1)
+    b.step(20)
     b.mha({0: 1.25, 1: 0.75, 3: 4.5}, (500.0, 35.0, -6.0), 120.0, 1.0, -0.5)
     b.step(110, 10)
     b.js(0, 1, 3)
@@ -699,9 +711,9 @@ def special(b: Bench) -> None:
             (20000, 2.5),
             (1001, 0x1A5),
             (1101, 0.0),
-            (1101, 2.0),
             (1002, 0x21),
             (1003, 500.0),
+            (1101, 2.0),
             (1202, 4321.0),
             (1000, 0.0),
         ),
@@ -790,7 +802,8 @@ def programs(b: Bench) -> None:
         "  A2.jovr := 0.5; jr (A2 := 0.125); wt (40); js (A2); s := A1.rp; CD2 := s;\n"
         "  WRITE('at ', s:8:3); startcnct (1); WRITELN;\n"
         "  REPEAT CI2 := CI2 + 3 UNTIL CI2 > 50; shp (A1 := 2.5); szpa (A2, 0.25); rdigi (A1);\n"
-        "  A3.dpoffset := 0.75; A1.varint[7] := 70; sysvardbl[9] := 9.5; WRCBI(8, -5); ABORT\n"
+        "  A3.dpoffset := 0.75; A1.varint[7] := 70; sysvardbl[9] := 9.5; WRCBI(8, -5);\n"
+        "  WRCBB(3, 200); WRCBD(16, -2.75); ABORT\n"
         "END.\n",
         0,
     )
@@ -804,11 +817,20 @@ def programs(b: Bench) -> None:
     )
     for _ in range(6):
         b.step(60, 10)
+    for task in (0, 1):
+        pcap.rdcbcnct(buffer := pcap.CBCNCT(task_number=task, size=24, buffer=bytearray(24)))
+        for k, byte in enumerate(buffer.buffer):
+            b.wrAxVarInt(task, 20 + k, byte)
+        pcap.wrcbcnct(pcap.CBCNCT(task_number=1, size=24, buffer=bytearray(buffer.buffer)))
     code, text = pcap.gettskstr(0)
     b.wrAxVarDbl(0, 3, float(code))
     b.wrSysVarInt(5, pcap.gettskinfo(0)[1] * 10 + len(text.strip()))
     b.wrSysVarDbl(6, pcap.rdSysVarDbl(9) + pcap.rdAxVarInt(0, 7) + pcap.rdAxVarDbl(0, 3))
-    b.program("BEGIN CD3 := sysvarint[5]; CD4 := sysvardbl[6]; CD5 := A1.vardbl[3]; rs END.", 1)
+    b.program(
+        "BEGIN CI11 := RDCBB(3); CI12 := RDCBI(8); CD6 := RDCBD(16); "
+        "CD3 := sysvarint[5]; CD4 := sysvardbl[6]; CD5 := A1.vardbl[3]; CD7 := A1.varint[23] + A1.varint[28]; rs END.",
+        1,
+    )
     b.step(20)
 
 
@@ -821,10 +843,10 @@ PARTS = re.compile(
 )
 RECORDS = re.compile(r"apci\.(TSRP|LMP|CMP|HMP|HMP3D|TRU)\.(?!epc|scratch|an)")
 ELSEWHERE = re.compile(
-    r"(apci|sap)\.(\w*Boot\w*|CardSelect|MsgToScreen|getEnvStr|Init\w+|mcuinit|MCUG3_Reset\w+|txbf\w*|rdcbcnct|wrcbcnct|rdepc"
+    r"(apci|sap)\.(\w*Boot\w*|CardSelect|MsgToScreen|getEnvStr|Init\w+|mcuinit|MCUG3_Reset\w+|txbf\w*|rdepc"
     r"|scp|stepcnct|stopcnct|wrci|ErrorReg\.(4|6|11|14|20)\.\w+|const\.(eeprom|cncount|cbsize|taskstr|spdsize|phithreshold)"
     r"|rule\.(versions|toolradius_spline|relays|commonpersist)|scope|comment|named_axis_args|qualifier_access|STOPCNCT"
-    r"|spoolnames|errors|RDCBx|WRCBx|EVENT|task_roles)"
+    r"|spoolnames|errors|EVENT|task_roles)"
 )
 CONFORMANCE = load_conformance()
 ROWS = [

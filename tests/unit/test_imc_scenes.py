@@ -15,12 +15,14 @@ import pytest
 
 from polycnc.conformance import State, load_conformance
 from polycnc.controllers.imc import imclib as lib
-from polycnc.controllers.imc.core._parameters import address
+from polycnc.controllers.imc.core._parameters import PARAMETERS, address
 from support.imc_bench import Bench
 
 RECORDED = Path(__file__).parents[1] / "golden" / "imc"
 IF, Q, P1, P2, C = lib.FIFO_SEL
 ONE = 65536
+CELLS = [f"user{width}b{k}" for width, count in ((16, 10), (32, 10), (48, 5)) for k in range(count)]
+CELLS.remove("user16b3")  # a queue waits for it
 SCENES: dict[str, tuple[str, Callable[[Bench], None]]] = {}
 
 
@@ -76,6 +78,10 @@ def singly(b: Bench) -> None:
     b.SetParam16(address("user16b3"), 0x7375, 0, IF)
     b.MoveVelocity(2 * ONE, 2, IF)
     b.step(30)
+    for k, name in enumerate(CELLS):
+        b.set(IF, -3 - k, **{name: (-1) ** k * (12345 + 617 * k)})
+        (b.GetParam16, b.GetParam32, b.GetParam48)[PARAMETERS[name].words - 1](address(name), 1000 + k)
+    b.step(2)
     writes = [
         ("user32b3", 0, 2, -99991),
         ("mcsdist", 1, 2, 57),
@@ -110,6 +116,11 @@ def singly(b: Bench) -> None:
     b.set(IF, 1, sethome=-1)
     b.set(IF, 2, homepos=5000, sethome=-1, haltmode=0, haltstep=1)
     b.step(10)
+    for axis in (0, 3):
+        b.MoveVelocity(ONE, axis, IF)
+        b.MoveSuperimposed(5, axis, IF)
+        b.MoveAbsolute(-9, axis, Q)
+    b.step(4)
     b.set(IF, 1, clear=-1)
     b.ClearFIFO(Q)
     b.step(10)

@@ -44,13 +44,6 @@ _STATUS_BITS = tuple(
         ),
     )
 )
-# Where the signals of an encoder are kept.
-_SIGNALS = (
-    (int(Digi.index), "index_now"),
-    (int(Digi.encoder_error), "encoder_error"),
-    (int(Digi.index_latched), "index_seen"),
-    (int(Digi.strobe_latched), "strobe_seen"),
-)
 
 
 class Axis:
@@ -307,13 +300,11 @@ class Axis:
     @property
     def digi(self) -> Digi:
         """Digital inputs, and the encoder signals of this axis; reading leaves the latched bits (see rdigi)."""
-        signals = sum(bit for bit, name in _SIGNALS if self.row[name])
-        return Digi(self._inputs() | self.alarms | signals)
+        return Digi(self._inputs() | self.alarms | int(self.row["signals"]))
 
     def reset_signals(self) -> None:
         """Reset the signals of the encoder, bits 16 to 19 of digi (Manual 002, 4.4.72)."""
-        for _, name in _SIGNALS:
-            self.row[name] = 0
+        self.row["signals"] = 0
 
     @property
     def relay(self) -> bool:
