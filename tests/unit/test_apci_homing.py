@@ -71,7 +71,7 @@ def test_encoder_signals_of_an_axis() -> None:
         seen |= axis.digi & Digi.index
     assert seen == Digi.index
     assert axis.digi == Digi.index_latched
-    axis.row["encoder_error"] = 1  # a fault of hardware, injected
+    axis.row["signals"] |= Digi.encoder_error  # a fault of hardware, injected
     rig.board.set_input(14, True)
     rig.board.advance(1)
     assert axis.digi == Digi.index_latched | Digi.encoder_error | Digi.strobe_latched | Digi.input14

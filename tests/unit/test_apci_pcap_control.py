@@ -6,7 +6,7 @@ from collections.abc import Iterator
 import pytest
 
 from polycnc.controllers.apci import pcap
-from polycnc.controllers.apci.core._registers import Digi, Ifs
+from polycnc.controllers.apci.core._registers import Digi
 from support.apci_bits import Axst
 from support.apci_pc import LATENCY, SCAN_S, Pc, near
 
@@ -400,13 +400,13 @@ def test_rdigi_resets_the_latched_signals_of_its_axis(pc: Pc) -> None:
     pc.close(0)
     go(pc, 0, 10.0)  # over the index at 4
     pc.board.set_input(14, True)  # the strobe of axis 0
-    pc.board.state.axis[0]["encoder_error"] = 1
+    pc.board.state.axis[0]["signals"] |= Digi.encoder_error
     pc.board.advance(2)
     assert [pcap.rddigib(0, bit) for bit in (18, 19, 20)] == [1, 1, 1]
     assert [pcap.rddigib(2, bit) for bit in (18, 19, 20)] == [0, 0, 0]
-    pc.board.state.axis["index_now"][:2] = 1  # in this scan
+    pc.board.state.axis["signals"][:2] |= int(Digi.index)  # in this scan
     pcap.rdigi(pcap.TSRP(an=0))
-    assert list(pc.board.state.axis["index_now"][:2]) == [0, 1]
+    assert list(pc.board.state.axis["signals"][:2]) == [0, Digi.index]
     assert [pcap.rddigib(0, bit) for bit in (17, 18, 19, 20)] == [0, 0, 0, 0]
     pcap.rddigi(record := pcap.TSRP(an=0))
     assert record.digi & (Digi.encoder_error | Digi.index_latched | Digi.strobe_latched) == 0
@@ -455,13 +455,13 @@ def test_there_are_no_outputs_beyond_the_eighth(pc: Pc) -> None:
 def test_the_interface_status_and_its_reset(pc: Pc) -> None:
     record = pcap.TSRP(an=0)
     assert pcap.rdifs(record) == 0
-    assert record.ifs == Ifs.edv | Ifs.cncrdy | Ifs.pfe | Ifs.scpfe  # switched on
+    assert record.ifs == 0x110003  # valid data, ready, both supplies just switched on
     assert [pcap.rdifsb(0, bit) for bit in (1, 2, 3, 17, 18)] == [1, 1, 0, 1, 0]
-    pc.slot.board.interface.report(Ifs.wdog | Ifs.iae | Ifs.BusError)  # type: ignore[attr-defined]
-    assert [pcap.rdifsb(0, bit) for bit in (18, 19, 22)] == [1, 1, 1]
+    pc.slot.board.interface.report(0x260000)  # type: ignore[attr-defined]
+    assert [number for number in range(1, 33) if pcap.rdifsb(0, number)] == [1, 2, 17, 18, 19, 21, 22]
     pcap.rifs(record)
     assert pcap.rdifs(record) == 0
-    assert record.ifs == Ifs.edv | Ifs.cncrdy | Ifs.BusError
+    assert record.ifs == 0x200003  # what a connection lost stays until the board boots
     assert pcap.rdifs(pcap.TSRP(an=9)) == 1
 
 

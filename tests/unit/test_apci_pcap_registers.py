@@ -526,7 +526,7 @@ def test_rdap_reads_all_of_the_record_that_the_table_lists(pc: Pc) -> None:
     assert record.kp == 1.5  # there is no such axis
 
 
-@pytest.mark.covers("apci.scp")
+@pytest.mark.covers("apci.scp", "apci.CTRLPARAMS")
 def test_scp_sends_a_field_of_15_by_15(pc: Pc) -> None:
     parameters = pcap.CTRLPARAMS()
     parameters.parameters[2][14] = 0.5

@@ -230,9 +230,7 @@ def test_the_highest_bits_of_digi_stay_0(board_type: str) -> None:
     board = Board(parse_system_file(f'board_type = "{board_type}"\n'))
     for number in range(1, 17):
         board.set_input(number, True)
-    row = board.state.axis[1]
-    for name in ("index_now", "index_seen", "strobe_seen", "encoder_error"):
-        row[name] = 1
+    board.state.axis[1]["signals"] = 0xF0000
     board.advance(1)
     word = int(board.axes[1].digi)
     assert word & Digi.input16

@@ -132,8 +132,8 @@ def test_lights_and_the_interrupt_of_a_program_reach_the_pc() -> None:
     axis = Sap()
     pcap.attach(axis.board, clock=None)
     pcap.InitMcuSystem3(pcap.tsrp_array(), pcap.ROSI(), 0, "system.dat")
-    for light in ("gn", "rd", "yl"):
-        axis.run(f"LED{light.upper()} := 1; CI3 := LEDGN * 4 + LEDRD * 2 + LEDYL;", scans=3)
+    for number, light in ((1, "gn"), (2, "rd"), (-1, "yl")):
+        axis.run(f"LED{light.upper()} := {number}; CI3 := LEDGN * 4 + LEDRD * 2 + LEDYL;", scans=3)
         assert [getattr(pcap, f"rdled{each}")() for each in ("gn", "rd", "yl")] == [
             int(each == light) for each in ("gn", "rd", "yl")
         ]
@@ -270,17 +270,10 @@ def test_clearci99_lets_all_axes_go_on_in_the_same_scan() -> None:
 
 def test_rdigi_of_a_program_resets_the_latched_signals_of_its_axes() -> None:
     axis = Sap()
-    names = ("index_seen", "strobe_seen", "encoder_error")
-    for row in axis.board.state.axis[:3]:
-        for name in names:
-            row[name] = 1
+    axis.board.state.axis["signals"] = 0xE0000
     axis.run("CI0 := A2.digi; rdigi (A1, A2); CI1 := A2.digi; CI2 := A3.digi;", scans=3)
     assert (axis.ci(0), axis.ci(1), axis.ci(2)) == (0b1110 << 16, 0, 0b1110 << 16)
-    assert [[int(row[name]) for name in names] for row in axis.board.state.axis[:3]] == [
-        [0] * 3,
-        [0] * 3,
-        [1] * 3,
-    ]
+    assert list(axis.board.state.axis["signals"]) == [0, 0, 0xE0000]
 
 
 @pytest.mark.covers("apci.ifs.17.wdog", "apci.ifs.18.iae")

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from polycnc.controllers.apci.board._axis_commands import cl
+from polycnc.controllers.apci.board._axis_commands import cl, ol
 from polycnc.controllers.apci.board._move_commands import Speeds, mlr
 from polycnc.controllers.apci.board._spool_commands import moves_queued, ssf, ssms
 from support.apci_bits import Axst, ErrorReg
@@ -82,6 +82,13 @@ def test_motor_command_of_any_axis() -> None:
     rig.board.advance(100)
     assert rig.board.axes[1].rp - before == pytest.approx(16383 / 32767 * 200.0 * 100 * SCAN_S)
     assert rig.board.axes[3].rp == 0.0
+    ol(rig.board, (0, 3))
+    cl(rig.board, (8,))
+    for number in range(9):  # the ninth is none
+        ssf(rig.board, 8, 1200 + number, 111 * (number + 1))
+    ssms(rig.board, (8,))
+    rig.board.advance(2)
+    assert [axis.mcp for axis in rig.board.axes] == [*range(111, 889, 111), 0]
 
 
 @pytest.mark.covers("apci.ssf.1000")

@@ -111,6 +111,15 @@ def test_probe_pulses_are_captured_while_capture_is_on() -> None:
     move_absolute(card, 450)
     card.wait()
     assert card.read_capture(0, 120) == ((), 0)
+    for other in (0x3, 0xF0, 0x300, 0x800, 0x7000, 0x7BFF):  # no other bit lets it capture
+        set_now(
+            card,
+            ("encpctr", other),
+            ("mcsdist", 120 if other in (0x3, 0x300, 0x7000) else -120),
+            ("mcsgo", FLAG),
+        )
+        card.wait()
+    assert card.read_capture(0, 120) == ((), 0)
     set_now(card, ("encpctr", 0x400), ("counter", 0))
     move_absolute(card, 90)
     card.wait()

@@ -31,7 +31,7 @@ def test_a_limit_switch_stops_the_motion_towards_it_only(way: int, bit: int, lev
     set_now(card, ("aioctr", 0x000F))
     send(card, IFIFO, ("mcstgvel", 20 * way))
     card.advance(200)
-    assert (card.read("error"), card.read("aio"), card.read("aiolat")) == (bit, level, level)
+    assert (card.read("error"), int(card.read("aio")) & 3, card.read("aiolat")) == (bit, level, level)
     assert (card.read("run"), card.read("moving")) == (FLAG, 0)
     assert 1000 <= card.read("curpos") * way < 1250
     here = card.read("curpos")
@@ -326,7 +326,25 @@ def test_a_card_that_is_switched_on_at_its_switches_shows_them() -> None:
         '[[axis]]\nlimit_positive = 9.0\nlimit_negative = 0.25\norigin = [0.3, 2.0]\nlow_when_on = ["origin"]\n'
     )
     card.advance(1)
-    assert [card.read("aio", i) for i in range(3)] == [0, 1 + 4, 2 + 4]
+    assert [card.read("aio", i) for i in range(3)] == [7, 1 + 4, 2 + 4]
+
+
+@pytest.mark.covers("imc.param.aioctr", "imc.param.aio", "imc.param.aiolat")
+@pytest.mark.parametrize(
+    ("control", "idle"),
+    [(0, 7), (0x000A, 7), (0x0010, 3), (0x058A, 7), (0x000F, 4), (0x00BF, 0), (0x000B, 6)],
+)
+def test_a_terminal_without_a_switch_is_never_active(control: int, idle: int) -> None:
+    card = ready_card("[[axis]]\n[[axis]]\nlimit_positive = 9.0\nlow_when_on = ['limit_negative']\n")
+    for axis in (0, 1):
+        set_now(card, ("aioctr", control, axis), ("mcstgvel", -5, axis))
+    card.advance(20)
+    assert [card.read("error", axis) for axis in (0, 1)] == [0, 0]
+    assert [card.read("aiolat", axis) for axis in (0, 1)] == [0, 0]
+    assert (card.read("aio", 0), int(card.read("aio", 1)) & 6) == (idle, idle & 6)
+    set_now(card, ("mcstgvel", 5))
+    card.advance(40)
+    assert (card.read("error"), card.read("curvel"), card.read("aiolat")) == (0, 5, 0)
 
 
 @pytest.mark.covers("imc.param.mcsslope", "imc.param.pcsslope")

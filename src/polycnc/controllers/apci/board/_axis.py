@@ -300,14 +300,11 @@ class Axis:
     @property
     def digi(self) -> Digi:
         """Digital inputs, and the encoder signals of this axis; reading leaves the latched bits (see rdigi)."""
-        row = self.row
-        signals = {
-            Digi.index: row["index_now"],
-            Digi.encoder_error: row["encoder_error"],
-            Digi.index_latched: row["index_seen"],
-            Digi.strobe_latched: row["strobe_seen"],
-        }
-        return Digi(self._inputs() | self.alarms | sum(bit for bit, value in signals.items() if value))
+        return Digi(self._inputs() | self.alarms | int(self.row["signals"]))
+
+    def reset_signals(self) -> None:
+        """Reset the signals of the encoder, bits 16 to 19 of digi (Manual 002, 4.4.72)."""
+        self.row["signals"] = 0
 
     @property
     def relay(self) -> bool:

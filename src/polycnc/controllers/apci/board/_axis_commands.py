@@ -176,6 +176,13 @@ def szpr(board: CommandedBoard, i: int, position: float) -> None:
     szpa(board, i, float(board.state.axis[i]["offset"]) + position)
 
 
+def lps(board: CommandedBoard, i: int, scans: int) -> None:
+    """Latch the actual position of an axis every so many scans from now on, until it is 0 (Manual 002, 4.4.27)."""
+    if scans >= 0:
+        row = board.state.axis[i]
+        row["latch_scans"], row["latch_count"] = scans, 0
+
+
 def utrovr(board: CommandedBoard, axes: Sequence[int]) -> None:
     """Take over the trajectory override for `axes`, in the same scan (Manual 002, 4.4.132)."""
     copies = not board.modereg & ModeReg.OvrMode

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from polycnc.controllers.apci.core._registers import Digi
 from polycnc.controllers.apci.core._state import BoardState
 from polycnc.kernel import KernelState, compiled
 
@@ -10,6 +11,9 @@ BY_NOTHING = 0
 BY_INPUT = 1
 BY_SCAN = 2
 BY_STROBE = 3
+
+# Signals of the encoder.
+INDEX, _INDEX_SEEN, _STROBE_SEEN = map(int, (Digi.index, Digi.index_latched, Digi.strobe_latched))
 
 
 @compiled
@@ -40,13 +44,13 @@ def latches_cycle(b: BoardState, state: KernelState, i: int) -> None:
     strobe = 1 if inputs & plan["strobe"] else 0
     if strobe > row["strobe_level"]:
         _latch(b, i, at, BY_STROBE)
-        row["strobe_seen"] = 1
+        row["signals"] |= _STROBE_SEEN
     row["strobe_level"] = strobe
     marks = state.switches.marks[i]
-    row["index_now"] = 1 if marks["index_crossed"] != 0 else 0
-    if row["index_now"] != 0:
+    row["signals"] &= ~INDEX
+    if marks["index_crossed"] != 0:
         row["lpndx"] = marks["index_position"] - row["shift"] - row["zero"]
-        row["index_seen"] = 1
+        row["signals"] |= INDEX | _INDEX_SEEN
     error = abs(state.servo.row[i]["following_error"])
     row["position_error"] = 1 if row["mpe"] > 0.0 and row["closed"] != 0 and error > row["mpe"] else 0
     row["in_position"] = 1 if row["ipw"] > 0.0 and row["pe"] != 0 and error < row["ipw"] else 0

@@ -10,7 +10,7 @@ import numpy as np
 from polycnc.controllers.apci.core._analysis import analysis_cycle
 from polycnc.controllers.apci.core._backlash import backlash_cycle
 from polycnc.controllers.apci.core._command_port import command_cycle
-from polycnc.controllers.apci.core._latches import latches_cycle
+from polycnc.controllers.apci.core._latches import INDEX, latches_cycle
 from polycnc.controllers.apci.core._limits import limits_cycle
 from polycnc.controllers.apci.core._motion import (
     INSIDE,
@@ -204,7 +204,7 @@ def _search_cycle(b: BoardState, state: KernelState, i: int) -> None:
     if row["search"] == NO_SEARCH or row["search"] == SEARCH_ENDS:
         return
     found = row["search"] == SEARCH_REFERENCE and b.board[0]["inputs"] & b.plan[i]["REF"] != 0
-    found = found or (row["search"] == SEARCH_INDEX and row["index_now"] != 0)
+    found = found or (row["search"] == SEARCH_INDEX and row["signals"] & INDEX != 0)
     if found:
         row["search"] = SEARCH_ENDS
         brake(b, i, state.base[i], row["speed"], row["hac"], BY_COMMAND)

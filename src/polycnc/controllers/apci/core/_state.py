@@ -119,14 +119,11 @@ AXIS_ROW = np.dtype(
         ("lp_source", np.int64),
         ("lp_level", np.int64),  # of its input in the last scan
         ("strobe_level", np.int64),
-        ("index_now", np.int64),  # passed in the last scan
+        ("signals", np.int64),  # of the encoder, as bits of digi
         ("lp", np.float64),
         ("lpndx", np.float64),
         ("latch_scans", np.int64),  # latch every so many scans, 0 off
         ("latch_count", np.int64),
-        ("index_seen", np.int64),
-        ("strobe_seen", np.int64),
-        ("encoder_error", np.int64),
         ("rv", np.float64),
         # The motor command port.
         ("mcp", np.int64),  # as it was written with the loop open

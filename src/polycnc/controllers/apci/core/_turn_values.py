@@ -9,7 +9,7 @@ import math
 
 from polycnc.controllers.apci.core import _turn_state as ts
 from polycnc.controllers.apci.core._motion import axis_velocity
-from polycnc.controllers.apci.core._registers import Axst, Digi
+from polycnc.controllers.apci.core._registers import Axst
 from polycnc.controllers.apci.core._state import (
     LEFT,
     MOVE,
@@ -46,9 +46,6 @@ _STATUS_BITS = (
 _MPE, _DHEF, _CEF, _PE, _CL, _IP, _LPSF, _REFERENCED, _SAF = map(int, _STATUS_BITS)
 _EO, _DNR, _UI, _REFH = int(Axst.eo), int(Axst.dnr), int(Axst.ui), int(Axst.refh)
 _LSLH, _LSRH, _LSLS, _LSRS = int(Axst.lslh), int(Axst.lsrh), int(Axst.lsls), int(Axst.lsrs)
-_INDEX, _ENCODER, _INDEX_SEEN, _STROBE_SEEN = map(
-    int, (Digi.index, Digi.encoder_error, Digi.index_latched, Digi.strobe_latched)
-)
 
 
 @compiled
@@ -209,18 +206,6 @@ def _status(b: BoardState, i: int) -> int:
 
 
 @compiled
-def _signals(b: BoardState, i: int) -> int:
-    """Return inputs and encoder signals of axis `i`."""
-    row = b.axis[i]
-    word = b.board[0]["inputs"]
-    word |= _INDEX if row["index_now"] != 0 else 0
-    word |= _ENCODER if row["encoder_error"] != 0 else 0
-    word |= _INDEX_SEEN if row["index_seen"] != 0 else 0
-    word |= _STROBE_SEEN if row["strobe_seen"] != 0 else 0
-    return int(word)
-
-
-@compiled
 def _moves(b: BoardState, i: int) -> int:
     """Return the number of motion commands in the spooler of axis `i`."""
     moves = 0
@@ -247,7 +232,7 @@ def register(b: BoardState, state: KernelState, what: int, i: int, factor: float
     if what == STATUS:
         return wrapped(_status(b, i))
     if what == SIGNALS:
-        return wrapped(_signals(b, i) | int(alarms))
+        return wrapped(board["inputs"] | row["signals"] | int(alarms))
     if what == OUTPUTS:
         return 0.0 if board["io_down"] != 0 else wrapped(board["outputs"])
     if what == TARGET:

@@ -70,8 +70,7 @@ def wrdigob(an: BoardAxis, bitnr: INT, value: INT) -> None:
 @record_call
 def rdigi(tsrp: Exchange) -> None:
     """Reset the latched signals of an axis' encoder, bits 16 to 19 of digi (Manual 002, 4.4.72)."""
-    for name in ("index_now", "encoder_error", "index_seen", "strobe_seen"):
-        tsrp.axis.row[name] = 0
+    tsrp.axis.reset_signals()
 
 
 # ---------------------------------------------------------------------- interface status

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
+from polycnc.controllers.apci.board import _axis_commands as commands
 from polycnc.controllers.apci.board._commanded import BoardAxis, CommandedBoard
 from polycnc.controllers.apci.board._records import LATCH_INFOS
 from polycnc.controllers.apci.library._call import INT, LIBRARY, axes_call, axis_call, session_call
@@ -15,8 +16,7 @@ from polycnc.controllers.library import Refused
 @axis_call
 def lps(an: BoardAxis, mst: INT) -> None:
     """Latch the actual position of an axis every `mst` scans, until `mst` is 0 (Manual 002, 4.4.27)."""
-    if mst >= 0:
-        an.row["latch_scans"], an.row["latch_count"] = mst, 0
+    commands.lps(an.board, an.index, mst)
 
 
 @session_call

@@ -101,7 +101,7 @@ def _uf(board: Board, call: Call) -> None:
 
 
 def _lps(board: Board, call: Call) -> None:
-    board.state.axis[call.axes[0]]["latch_scans"] = int(_numbers(call)[0])
+    axis_commands.lps(board, call.axes[0], int(_numbers(call)[0]))
 
 
 def _clear_ci99(board: Board, _: Call) -> None:
@@ -110,8 +110,7 @@ def _clear_ci99(board: Board, _: Call) -> None:
 
 def _rdigi(board: Board, call: Call) -> None:
     for i in call.axes:
-        row = board.state.axis[i]
-        row["index_seen"] = row["strobe_seen"] = row["encoder_error"] = row["index_now"] = 0
+        board.axes[i].reset_signals()
 
 
 def _rifs(board: Board, _: Call) -> None:
@@ -146,7 +145,8 @@ COMMANDS: Mapping[str, Command] = {
 }
 
 _ON_BOARD = ("modereg", "nfrax", "trovr", "trovrst")
-_VARIABLES = ("pu", "tu", "trac", "trvl", "trtvl", "irqpc", "ledgn", "ledrd", "ledyl")
+_LIGHTS = ("ledgn", "ledrd", "ledyl")
+_VARIABLES = ("pu", "tu", "trac", "trvl", "trtvl", "irqpc", *_LIGHTS)
 
 
 class BoardHost:
@@ -200,7 +200,7 @@ class BoardHost:
             board.raise_interrupt(bool(value))
         elif name in _VARIABLES:
             kind = float if name in ("trac", "trvl", "trtvl") else int
-            setattr(board.variables, name, kind(value))
+            setattr(board.variables, name, int(value != 0) if name in _LIGHTS else kind(value))
         elif name in _ON_BOARD:
             setattr(board, name, value if name in ("trovr", "trovrst") else int(value))
         else:

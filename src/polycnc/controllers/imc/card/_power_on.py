@@ -126,7 +126,9 @@ def make_card(config: CardConfig) -> CardState:
         row = s.axis[i]
         row["counts_per_pulse"] = axis.counts_per_pulse
         row["inverted"] = sum(_TERMINALS[name] for name in set(axis.low_when_on))
-        row["levels"] = row["inverted"]
+        wired = {name for name in _TERMINALS if getattr(axis, name) is not None}
+        row["unwired"] = sum(bit for name, bit in _TERMINALS.items() if name not in wired)
+        row["levels"] = row["inverted"] | row["unwired"]
         if axis.probe is not None:
             row["probe_origin"], row["probe_pitch"] = axis.probe.first, axis.probe.pitch
     return s

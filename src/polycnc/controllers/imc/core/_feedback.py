@@ -57,9 +57,10 @@ def terminals_cycle(s: CardState, state: KernelState, i: int) -> int:
     axis, m = s.axis[i], s.memory
     levels = state.switches.switch[i, LIMIT_HIGH]["level"] | state.switches.switch[i, LIMIT_LOW]["level"] << 1
     levels = (levels | state.switches.switch[i, REFERENCE]["level"] << 2) ^ axis["inverted"]
+    control = get_u16(m, i, addr.AIOCTR)
+    high = (control & 1) | (control >> 1 & 2) | (4 if control & ORIGIN_HIGH else 0)
+    levels = (levels & ~axis["unwired"]) | (axis["unwired"] & ~high)
     if levels != axis["levels"]:
-        control = get_u16(m, i, addr.AIOCTR)
-        high = (control & 1) | (control >> 1 & 2) | (4 if control & ORIGIN_HIGH else 0)
         active = ~(levels ^ high) & (levels ^ axis["levels"]) & 7
         put16(m, i, addr.AIOLAT, get_u16(m, i, addr.AIOLAT) | active)
         axis["levels"] = levels

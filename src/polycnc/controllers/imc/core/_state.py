@@ -100,6 +100,7 @@ AXIS_ROW = np.dtype(
         ("last_error", np.int64),
         ("was_moving", np.int64),
         ("inverted", np.int64),  # terminals that are low while their switch is on, bit by number
+        ("unwired", np.int64),  # terminals without a switch: never active, whatever aioctr says
         ("levels", np.int64),  # terminals of the last cycle
         ("probe_origin", np.float64),
         ("probe_pitch", np.float64),
