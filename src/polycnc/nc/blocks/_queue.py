@@ -103,6 +103,7 @@ class QueueWriter:
         self.backlog.clear()
         self.events.clear()
         self.probes.clear()
+        self.paths.row[self.path]["next_events"] = 0
         self.stops = 0
         if self.marks is not None:
             self.marks.clear()
@@ -216,7 +217,9 @@ class QueueWriter:
 
     def _put_wait(self, item: Wait) -> None:
         if item.passes:
+            self._put_in_step([Event(word, item.line, tag=item.tag) for word in item.events])
             return
+        in_step = self.withdraw_in_step()
         words = item.events or (("",) if item.stop is not None else ())
         answered = self.answers and bool(item.events)
         stands = self.stands_at_stops and item.stop in (Stop.PROGRAM, Stop.OPTIONAL)
@@ -231,6 +234,23 @@ class QueueWriter:
             self.stops += 1
         if (item.duration_s > 0.0 or not words) and not answered:
             self._append_wait(item.duration_s, NO_EVENT, item.tag)
+        self._put_in_step(in_step)
+
+    def _put_in_step(self, events: list[Event]) -> None:
+        """Let events come when the next motion begins, after those that wait for it already."""
+        row = self.paths.row[self.path]
+        for event in events:
+            if not row["next_events"]:
+                row["next_event"] = self._next_event
+            row["next_events"] += 1
+            self._note(event)
+
+    def withdraw_in_step(self) -> list[Event]:
+        """Take back the events that wait for the next motion, whose numbers are the last ones."""
+        row = self.paths.row[self.path]
+        waiting, row["next_events"] = int(row["next_events"]), 0
+        self._next_event -= waiting
+        return [self.events.pop(self._next_event + place) for place in range(waiting)]
 
     @property
     def next_event(self) -> int:
