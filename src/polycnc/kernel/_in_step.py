@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from polycnc.kernel._jit import compiled
-from polycnc.kernel._lines import Rows
 from polycnc.kernel._path import (
     FEED_S,
     HELD,

@@ -258,9 +258,12 @@ class QueueWriter:
         return self._next_event
 
     def note_run(self, run: EventRun) -> None:
-        """Take the events of a run of plain blocks, which are in the queue, from `next_event` on."""
-        self.events.add_run(self._next_event, run)
-        self._next_event += len(run)
+        """Take the events of a run of plain blocks, from `next_event` on; the last ones may wait for a motion yet."""
+        queued = len(run) - min(int(self.paths.row[self.path]["next_events"]), len(run))
+        self.events.add_run(self._next_event, run.part(0, queued))
+        self._next_event += queued
+        for at in range(queued, len(run)):
+            self._note(run[at])
 
     def _note(self, event: Event) -> None:
         self.events[self._next_event] = event

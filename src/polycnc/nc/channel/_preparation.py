@@ -75,8 +75,11 @@ class Preparation:
                 self.close()
                 return
             self._calls.begin()
-        if prepared.writer.backlog and not prepared.writer.catch_up():
-            return
+        if prepared.writer.backlog:
+            if not prepared.writer.catch_up():
+                return
+            if self.over:
+                self._drop_in_step()
         most = None if blocks is None else reader.blocks + blocks
         while not self.over and (most is None or reader.blocks < most) and prepared.has_room():
             if turns.paused:
@@ -225,6 +228,13 @@ class Preparation:
             self._interpreter.finish()
         except ProgramError as error:
             self._note(error)
+        self._drop_in_step()
+
+    def _drop_in_step(self) -> None:
+        """Drop functions that wait for a move when none is left."""
+        writer = self._prepared.writer
+        for event in [] if writer.backlog else writer.withdraw_in_step():
+            self._interpreter.messages.note(f"{event.word} does nothing: no move follows", event.line)
 
     @property
     def starved(self) -> bool:

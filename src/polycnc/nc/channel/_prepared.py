@@ -56,7 +56,9 @@ class Prepared:
         self._tables = dialect.tables()
         if before is None:
             self.writer = QueueWriter(kernel.seg, kernel.paths, kernel.limits, path)
-            self.records = BlockRecords(dialect, rules, self._tables, CHUNK_BLOCKS)
+            self.records = BlockRecords(
+                dialect, rules, self._tables, CHUNK_BLOCKS, laser=config.spindle.laser
+            )
         else:
             self.writer, self.records = before.writer, before.records
         if before is not None and keeps_modal:

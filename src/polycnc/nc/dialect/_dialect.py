@@ -21,7 +21,17 @@ from pydantic import AfterValidator, Field, model_validator
 from polycnc.errors import UsageError, did_you_mean
 from polycnc.machine import PathConfig, StrictModel, load_toml, parse_toml, problem, validate
 from polycnc.nc.dialect._cycle_settings import Cycles, CycleSettings
-from polycnc.nc.modal._actions import M_ACTIONS, M_SENSES, NO_SENSE, Action, Family, Group, MAction, of_family
+from polycnc.nc.modal._actions import (
+    M_ACTIONS,
+    M_SENSES,
+    NO_SENSE,
+    OUTPUT_SENSES,
+    Action,
+    Family,
+    Group,
+    MAction,
+    of_family,
+)
 from polycnc.nc.modal._modal import (
     ABSOLUTE,
     ARC_RELATIVE,
@@ -423,6 +433,8 @@ class Dialect(StrictModel):
         for code, m_action in self._by_m.items():
             if code < _LOW_M:
                 m_sense[code] = M_SENSES.get(m_action, NO_SENSE)
+                if m_action is MAction.OUTPUT_IN_STEP:
+                    m_sense[code] = OUTPUT_SENSES.get(self.m_words.get(str(code), ""), NO_SENSE)
         return DialectTables(g_action, self.increment, m_sense, self.tool_word == "select")
 
     def set_initial_state(self, modal: Modal) -> None:
@@ -443,7 +455,7 @@ class Dialect(StrictModel):
 class DialectTables(NamedTuple):
     """The dialect as the compiled kernel reads it: actions by tenths of the G code, increment of numbers.
 
-    `m_sense` says of each M code what it switches (`M_SENSES`), or NO_SENSE; with `selects` T is for the next tool
+    `m_sense` says of each M code what it does (`M_SENSES`, `OUTPUT_SENSES`), or NO_SENSE; with `selects` T is for the next tool
     change and nothing else.
     """
 

@@ -266,7 +266,9 @@ class MAction(Enum):
 SPINDLE_SENSES = {MAction.SPINDLE_CW: 1, MAction.SPINDLE_CCW: -1, MAction.SPINDLE_STOP: 0}
 """Which way M codes let the spindle turn, 1 clockwise."""
 
-NO_SENSE, COOLANT_ON, COOLANT_OFF = 2, 3, 4
+NO_SENSE, COOLANT_ON, COOLANT_OFF, OUTPUT_BIT, OUTPUT_VALUE = 2, 3, 4, 5, 6
+OUTPUT_SENSES = {"P!": OUTPUT_BIT, "E!Q!": OUTPUT_VALUE}
+"""What an output in step with motion is by the words that it takes: P a bit, E with the value Q."""
 M_SENSES = {
     **SPINDLE_SENSES,
     MAction.COOLANT_MIST: COOLANT_ON,
