@@ -50,7 +50,8 @@ class PassedEvents:
     """Let a path pass events for `told`, which gets them in their order; without it the path stops at each.
 
     Those in step with motion stop it never: without `told`, `on_event` gets them in their cycle, and its answer counts
-    for nothing. The moment of the run keeps the last one, the tool times, and how many points of rest the path has left at once.
+    for nothing. The moment of the run keeps the last one, the tool times, and how many points of rest the path has left
+    at once.
     """
 
     def __init__(self, machine: Machine, path: int) -> None:

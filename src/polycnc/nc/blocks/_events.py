@@ -63,8 +63,8 @@ FUNCTION = -1.0
 class EventRun:
     """Hold the events of a run of plain blocks as columns: what S and M say, negative for nothing, and the tags.
 
-    `number` is FUNCTION for these. Of an output it is the number E, and `speed` its value Q; below FUNCTION it has none,
-    and `speed` is its P.
+    `number` is FUNCTION for these. Of an output it is the number E, and `speed` its value Q; below FUNCTION it has
+    none, and `speed` is its P.
     """
 
     speed: Floats

@@ -455,8 +455,8 @@ class Dialect(StrictModel):
 class DialectTables(NamedTuple):
     """The dialect as the compiled kernel reads it: actions by tenths of the G code, increment of numbers.
 
-    `m_sense` says of each M code what it does (`M_SENSES`, `OUTPUT_SENSES`), or NO_SENSE; with `selects` T is for the next tool
-    change and nothing else.
+    `m_sense` says of each M code what it does (`M_SENSES`, `OUTPUT_SENSES`), or NO_SENSE; with `selects` T is for the
+    next tool change and nothing else.
     """
 
     g_action: npt.NDArray[np.int16]
