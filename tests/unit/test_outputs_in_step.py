@@ -151,7 +151,20 @@ def test_many_within_a_cycle_are_all_told() -> None:
 
 def test_blocks_of_any_mixture_are_as_the_reference_interpreter_has_them() -> None:
     rng = np.random.default_rng(4)
-    words = ("M62 P1", "M67 E0 Q3", "M67 E2 Q4.5", "M63 P2", "S80", "M3", "M8", "M5 S20", "M68 E1 Q1", "", "", "")
+    words = (
+        "M62 P1",
+        "M67 E0 Q3",
+        "M67 E2 Q4.5",
+        "M63 P2",
+        "S80",
+        "M3",
+        "M8",
+        "M5 S20",
+        "M68 E1 Q1",
+        "",
+        "",
+        "",
+    )
     lines = ["G21 G64 P0.05 Q0.02 F3000 G1"]
     for n in range(200):
         move = rng.choice((f"X{n % 13}.5", f"Y{n % 5} X{n % 3}", "", "G0 Z2", "G1 Z3", "X0", "X0"))
@@ -160,7 +173,8 @@ def test_blocks_of_any_mixture_are_as_the_reference_interpreter_has_them() -> No
         config = machine_config(LINEAR, table, name="mixed")
         program = "\n".join(lines) + "\nX99\n"
         listed = [
-            moves(program, config=config, dialect="linuxcnc", ordinary_blocks=least) for least in (0, math.inf)
+            moves(program, config=config, dialect="linuxcnc", ordinary_blocks=least)
+            for least in (0, math.inf)
         ]
         assert listed[0] == listed[1]
         assert sum(bool(re.search(r"with M6", each)) for each in listed[0]) > 20

@@ -145,6 +145,9 @@ def length(block: BlockContext) -> None:
 
 def radius(block: BlockContext) -> None:
     """Carry out radius compensation."""
+    alone = block.words.g.get(Group.NON_MODAL)
+    if alone is not None and alone.action.family is Family.PROFILE:
+        return  # D is a distance
     if "D" in block.words.by_letter or Group.RADIUS_COMPENSATION in block.words.g:
         compensate_radius(block)
 

@@ -171,7 +171,10 @@ class Preparation:
             return
         flags = MESSAGE if item.message else PLAIN
         end = text.next_line(item.offset)
-        block = Block(item.words, flags, item.skip_level, item.offset, end, item.line, message=item.message)
+        block = Block(
+            item.words, flags, item.skip_level, item.offset, end, item.line,
+            message=item.message, profile=item.profile,
+        )  # fmt: skip
         self._execute(text, block)
 
     # ------------------------------------------------------------------ where it goes on

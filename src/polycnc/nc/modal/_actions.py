@@ -45,6 +45,7 @@ class Family(StrEnum):
     TURNING = "turning"
     TURNING_CYCLE = "turning cycle"
     CONTOUR_CYCLE = "contour cycle"
+    PROFILE = "profile"
     FRAME = "frame"
     PLACING = "placing"
     PATH = "path"
@@ -210,6 +211,9 @@ class Action(IntEnum):
     PROBE_IN_PASSING = Family.PATH, "axes", "Measure one axis in passing"
     PROBE_FIXED_STOP = Family.PATH, "axes", "Straight at feed up to a fixed stop"
     LEFT_OUT = Group.IGNORED, "", "As if it were not there"
+    PROFILE_FINISH = Family.PROFILE, "X Z Q D E P", "Finish the profile of sub-program Q"
+    PROFILE_ROUGH = Family.PROFILE, "X Z Q D I R U W", "Rough the profile of sub-program Q along Z"
+    PROFILE_FACE = Family.PROFILE, "X Z Q D I R U W", "The same along X"
     # fmt: on
 
     @property

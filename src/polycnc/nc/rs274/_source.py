@@ -16,7 +16,8 @@ from polycnc.nc.rs274 import _inputs as inputs
 from polycnc.nc.rs274._functions import FUNCTIONS, NumberError
 from polycnc.nc.rs274._kept_modes import Words, modes_of, words_back
 from polycnc.nc.rs274._parameters import LAST_LOCAL, Parameters
-from polycnc.nc.rs274._program import Program, numbered_label
+from polycnc.nc.rs274._profile_places import ProfilePlaces
+from polycnc.nc.rs274._program import Program, numbered_label, profile_label
 from polycnc.nc.rs274._saved import SavedLevel, SavedProgram
 from polycnc.nc.sources._block_source import (
     Drain,
@@ -27,18 +28,21 @@ from polycnc.nc.sources._block_source import (
     WordsBlock,
 )
 from polycnc.nc.text._program import ProgramText
-from polycnc.nc.text._scan_plain import Word
+from polycnc.nc.text._scan import PLAIN
+from polycnc.nc.text._scan_plain import Block, Word
 
 MOST_LEVELS = 10
 """How deep calls may be nested. Source: LinuxCNC `interp_internal.hh`, INTERP_SUB_ROUTINE_LEVELS."""
 LONGEST_LOOP_PAUSES = 2_500
 _PAUSE_CALLS = 100
 _LARGEST = 1e12
+_MOST_ROWS = 10_000
 _PARAMETERS = ("L", "N")
 _PROBLEMS = (NumberError, KeyError, OverflowError, ValueError, UsageError)
 Suspended: TypeAlias = Generator[
     "SourceItem | CallRequest | ModesRequest | WaitRequest", None, "float | None"
 ]
+ValuedWords: TypeAlias = tuple[tuple[str, float, int], ...]
 Function: TypeAlias = Callable[[list[float], dict[str, float]], Suspended]
 
 
@@ -128,6 +132,7 @@ class RunningProgram:
             "skips": owner.skips,
             "span": self._span,
             "block": self._block,
+            "profile": self._profile,
             "says": self._says,
             "six": "{:f}".format,
             "times": lambda number: max(0, round(number)),
@@ -326,14 +331,43 @@ class RunningProgram:
         return TextSpan(offset, line, end, level.program.text, level.calls)
 
     def _block(
-        self, line: int, offset: int, words: tuple[tuple[str, float, int], ...], message: str
+        self,
+        line: int,
+        offset: int,
+        words: ValuedWords,
+        message: str,
+        profile: tuple[Block, ...] | None = None,
     ) -> WordsBlock:
-        for letter, value, _ in words:
-            if not abs(value) < _LARGEST:
-                raise NumberError(f"the number {value:g} of {letter} is too large")
-        made = tuple(Word(letter, value, place, True) for letter, value, place in words)
         level = self._levels[-1]
-        return WordsBlock(made, line, offset, message, text=level.program.text, calls=level.calls)
+        return WordsBlock(
+            _made(words), line, offset, message, text=level.program.text, calls=level.calls, profile=profile
+        )
+
+    def _profile(self, words: ValuedWords) -> tuple[Block, ...] | None:
+        """Carry out the sub-program of a cycle to have its lines; None where there is none.
+
+        Positions that it asks for are those along its profile.
+        """
+        values = {letter: value for letter, value, _ in words}
+        if "Q" not in values or not abs(values["Q"]) < _LARGEST:
+            return None
+        program = self._levels[-1].program
+        traced = program.functions.get(profile_label(str(round(values["Q"]))))
+        if traced is None:
+            return None
+        rows: list[Block] = []
+        with ProfilePlaces(self._owner.parameters.state) as places:
+            places.go_on({letter: value for letter, value in values.items() if letter in "XZ"})
+            for item in self._function(traced)([0.0] * (LAST_LOCAL + 1), {}):
+                if not isinstance(item, WordsBlock):
+                    raise NumberError(
+                        "a profile with a call, a wait or a loop without end", "Let it hold moves."
+                    )
+                rows.append(Block(item.words, PLAIN, 0, item.offset, item.offset, item.line))
+                places.go_on({word.letter: word.value for word in item.words})
+                if len(rows) > _MOST_ROWS:
+                    raise NumberError(f"a profile of more than {_MOST_ROWS} lines", "Check its loops.")
+        return tuple(rows)
 
     def _says(self, line: int, offset: int, text: str) -> WordsBlock:
         level = self._levels[-1]
@@ -403,6 +437,13 @@ class RunningProgram:
             case UsageError():
                 return ProgramError(error.what, position=position, hint=error.hint)
         return ProgramError("the number is too large", position=position, hint="Look at the expression.")
+
+
+def _made(words: ValuedWords) -> tuple[Word, ...]:
+    for letter, value, _ in words:
+        if not abs(value) < _LARGEST:
+            raise NumberError(f"the number {value:g} of {letter} is too large")
+    return tuple(Word(letter, value, place, True) for letter, value, place in words)
 
 
 def _whole(**words: float) -> int:
