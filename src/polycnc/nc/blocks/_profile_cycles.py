@@ -13,8 +13,8 @@ from polycnc.nc.blocks._block import BlockContext
 from polycnc.nc.blocks._handlers import carries_out
 from polycnc.nc.blocks._moves import QueueItem
 from polycnc.nc.blocks._profile_cuts import Cut, Roughing, finish, rough
-from polycnc.nc.blocks._profiles import Part
-from polycnc.nc.blocks._turning import SAME_MM, Piece, Step, TurningError
+from polycnc.nc.blocks._profiles import NEAR, Part
+from polycnc.nc.blocks._turning import Piece, Step, TurningError
 from polycnc.nc.blocks._words import GWord, whole_number
 from polycnc.nc.modal._actions import Action, Family
 from polycnc.nc.modal._modal import (
@@ -55,7 +55,7 @@ def cut_profile(block: BlockContext, g: GWord) -> list[QueueItem]:
     if block.block.profile is None:
         name = whole_number(number, "a sub-program", block.problem)
         raise block.problem(
-            f"there is no sub-program O{name} before this line", f"Write O{name} SUB and its profile.", number
+            f"there is no sub-program O{name} in this file", f"Write O{name} SUB and its profile.", number
         )
     here = _here(block)
     begin = _point(block, dict(block.words.lengths("XZ")), here)
@@ -191,7 +191,7 @@ def _items(block: BlockContext, g: GWord, cuts: list[Cut]) -> Iterator[QueueItem
     steps = []
     for cut in cuts:
         end = cut.end * unit + offset
-        if abs(end - at) < SAME_MM:
+        if abs(end - at) < NEAR * unit:
             continue
         point = end.imag, end.real
         arc = None
