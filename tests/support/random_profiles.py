@@ -19,7 +19,12 @@ class _Profile:
 
     def lines(self) -> list[str]:
         chance = self._random.random
-        lines = ["G61 G21 G18 F300", "G0 X30 Z5", "O5 SUB", f"{'G0' if chance() < 0.5 else 'G1'} X{self._x} Z0"]
+        lines = [
+            "G61 G21 G18 F300",
+            "G0 X30 Z5",
+            "O5 SUB",
+            f"{'G0' if chance() < 0.5 else 'G1'} X{self._x} Z0",
+        ]
         lines += [self._move() for _ in range(self._random.randint(2, 7))]
         lines.append("O5 ENDSUB")
         for _ in range(self._random.randint(1, 2)):
@@ -55,7 +60,9 @@ class _Profile:
         if chance() < 0.7:
             words.append(f"D{choice((0.0, 0.2, 0.5, 1.0, 1.5))}")
         if code == "G70":
-            return " ".join([*words, *((f"E{choice((0.0, 0.1))}", f"P{choice((1, 2, 3))}") if chance() < 0.5 else ())])
+            return " ".join(
+                [*words, *((f"E{choice((0.0, 0.1))}", f"P{choice((1, 2, 3))}") if chance() < 0.5 else ())]
+            )
         if chance() < 0.7:
             words.append(f"I{choice((1.0, 0.7, 2.0, 3.3))}")
         if chance() < 0.5:

@@ -41,9 +41,15 @@ def test_levels_of_a_shaft_with_a_cone() -> None:
         ("G70 Q3 P2000", "8:1: G70: 2000 passes"),
         ("G41.1 D1 L2\nG71 Q3", "9:1: a turning cycle while radius compensation is active"),
         ("O4 SUB\nO3 CALL\nO4 ENDSUB\nG71 Q4", "11:1: a profile with a call"),
-        ("O4 SUB\nG1 X5 Z-2\nG2 X7 Z-5\nO4 ENDSUB\nG71 Q4", "12:1: G71: an arc of the profile without a centre"),
+        (
+            "O4 SUB\nG1 X5 Z-2\nG2 X7 Z-5\nO4 ENDSUB\nG71 Q4",
+            "12:1: G71: an arc of the profile without a centre",
+        ),
         ("O4 SUB\nG1 X5 Z-2 A1 C1\nX9\nO4 ENDSUB\nG71 Q4", "12:1: G71: A and C at one corner"),
-        ("O4 SUB\nG1 X5 Z-2\nX9 Z-3\nX8 Z-2\nO4 ENDSUB\nG71 Q4", "13:1: G71: the profile goes back along the cuts"),
+        (
+            "O4 SUB\nG1 X5 Z-2\nX9 Z-3\nX8 Z-2\nO4 ENDSUB\nG71 Q4",
+            "13:1: G71: the profile goes back along the cuts",
+        ),
     ],
 )
 def test_what_they_refuse(block: str, what: str) -> None:

@@ -75,11 +75,8 @@ class Preparation:
                 self.close()
                 return
             self._calls.begin()
-        if prepared.writer.backlog:
-            if not prepared.writer.catch_up():
-                return
-            if self.over:
-                self._drop_in_step()
+        if prepared.writer.backlog and not self._catch_up():
+            return
         most = None if blocks is None else reader.blocks + blocks
         while not self.over and (most is None or reader.blocks < most) and prepared.has_room():
             if turns.paused:
@@ -232,6 +229,13 @@ class Preparation:
         except ProgramError as error:
             self._note(error)
         self._drop_in_step()
+
+    def _catch_up(self) -> bool:
+        """Put what waits for room, and return whether nothing waits any more."""
+        done = self._prepared.writer.catch_up()
+        if done and self.over:
+            self._drop_in_step()
+        return done
 
     def _drop_in_step(self) -> None:
         """Drop functions that wait for a move when none is left."""

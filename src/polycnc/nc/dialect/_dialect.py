@@ -21,17 +21,7 @@ from pydantic import AfterValidator, Field, model_validator
 from polycnc.errors import UsageError, did_you_mean
 from polycnc.machine import PathConfig, StrictModel, load_toml, parse_toml, problem, validate
 from polycnc.nc.dialect._cycle_settings import Cycles, CycleSettings
-from polycnc.nc.modal._actions import (
-    M_ACTIONS,
-    M_SENSES,
-    NO_SENSE,
-    OUTPUT_SENSES,
-    Action,
-    Family,
-    Group,
-    MAction,
-    of_family,
-)
+from polycnc.nc.modal._actions import M_ACTIONS, NO_SENSE, Action, Family, Group, MAction, of_family, sense_of
 from polycnc.nc.modal._modal import (
     ABSOLUTE,
     ARC_RELATIVE,
@@ -432,9 +422,7 @@ class Dialect(StrictModel):
         m_sense = np.full(_LOW_M, NO_SENSE, np.int8)
         for code, m_action in self._by_m.items():
             if code < _LOW_M:
-                m_sense[code] = M_SENSES.get(m_action, NO_SENSE)
-                if m_action is MAction.OUTPUT_IN_STEP:
-                    m_sense[code] = OUTPUT_SENSES.get(self.m_words.get(str(code), ""), NO_SENSE)
+                m_sense[code] = sense_of(m_action, self.m_words.get(str(code), ""))
         return DialectTables(g_action, self.increment, m_sense, self.tool_word == "select")
 
     def set_initial_state(self, modal: Modal) -> None:

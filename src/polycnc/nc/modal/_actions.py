@@ -282,6 +282,13 @@ M_SENSES = {
 """What M codes do that blocks of a compiled run may say: turn the spindle or switch coolant; others are NO_SENSE."""
 
 
+def sense_of(action: MAction, takes: str) -> int:
+    """Return what an M code does that takes these words, see `M_SENSES` and `OUTPUT_SENSES`."""
+    if action is MAction.OUTPUT_IN_STEP:
+        return OUTPUT_SENSES.get(takes, NO_SENSE)
+    return M_SENSES.get(action, NO_SENSE)
+
+
 def coolant_with(coolant: tuple[int, ...], code: int, sense: int) -> tuple[int, ...]:
     """Return the codes of the coolant that is on after an M code that switches coolant."""
     if sense == COOLANT_OFF:

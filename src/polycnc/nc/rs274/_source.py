@@ -16,8 +16,8 @@ from polycnc.nc.rs274 import _inputs as inputs
 from polycnc.nc.rs274._functions import FUNCTIONS, NumberError
 from polycnc.nc.rs274._kept_modes import Words, modes_of, words_back
 from polycnc.nc.rs274._parameters import LAST_LOCAL, Parameters
-from polycnc.nc.rs274._profile_places import ProfilePlaces
-from polycnc.nc.rs274._program import Program, numbered_label, profile_label
+from polycnc.nc.rs274._profile import profile_of
+from polycnc.nc.rs274._program import Program, numbered_label
 from polycnc.nc.rs274._saved import SavedLevel, SavedProgram
 from polycnc.nc.sources._block_source import (
     Drain,
@@ -28,7 +28,6 @@ from polycnc.nc.sources._block_source import (
     WordsBlock,
 )
 from polycnc.nc.text._program import ProgramText
-from polycnc.nc.text._scan import PLAIN
 from polycnc.nc.text._scan_plain import Block, Word
 
 MOST_LEVELS = 10
@@ -36,7 +35,6 @@ MOST_LEVELS = 10
 LONGEST_LOOP_PAUSES = 2_500
 _PAUSE_CALLS = 100
 _LARGEST = 1e12
-_MOST_ROWS = 10_000
 _PARAMETERS = ("L", "N")
 _PROBLEMS = (NumberError, KeyError, OverflowError, ValueError, UsageError)
 Suspended: TypeAlias = Generator[
@@ -132,7 +130,9 @@ class RunningProgram:
             "skips": owner.skips,
             "span": self._span,
             "block": self._block,
-            "profile": self._profile,
+            "profile": lambda words: profile_of(
+                self._levels[-1].program.functions, self._function, owner.parameters.state, words
+            ),
             "says": self._says,
             "six": "{:f}".format,
             "times": lambda number: max(0, round(number)),
@@ -342,32 +342,6 @@ class RunningProgram:
         return WordsBlock(
             _made(words), line, offset, message, text=level.program.text, calls=level.calls, profile=profile
         )
-
-    def _profile(self, words: ValuedWords) -> tuple[Block, ...] | None:
-        """Carry out the sub-program of a cycle to have its lines; None where there is none.
-
-        Positions that it asks for are those along its profile.
-        """
-        values = {letter: value for letter, value, _ in words}
-        if "Q" not in values or not abs(values["Q"]) < _LARGEST:
-            return None
-        program = self._levels[-1].program
-        traced = program.functions.get(profile_label(str(round(values["Q"]))))
-        if traced is None:
-            return None
-        rows: list[Block] = []
-        with ProfilePlaces(self._owner.parameters.state) as places:
-            places.go_on({letter: value for letter, value in values.items() if letter in "XZ"})
-            for item in self._function(traced)([0.0] * (LAST_LOCAL + 1), {}):
-                if not isinstance(item, WordsBlock):
-                    raise NumberError(
-                        "a profile with a call, a wait or a loop without end", "Let it hold moves."
-                    )
-                rows.append(Block(item.words, PLAIN, 0, item.offset, item.offset, item.line))
-                places.go_on({word.letter: word.value for word in item.words})
-                if len(rows) > _MOST_ROWS:
-                    raise NumberError(f"a profile of more than {_MOST_ROWS} lines", "Check its loops.")
-        return tuple(rows)
 
     def _says(self, line: int, offset: int, text: str) -> WordsBlock:
         level = self._levels[-1]
