@@ -17,11 +17,8 @@ from polycnc.nc.channel._options import ChannelOptions
 from support.programs import LINEAR, machine_config, moves, notes
 
 MILL = machine_config(LINEAR, name="mill")
-MERGING = MILL.model_copy(
-    update={"path": MILL.path.model_copy(update={"path_tolerance_mm": 0.2, "merge_mm": 0.02})}
-)
 PROGRAM = """\
-G21 G90 G64 P0.05 Q0.02
+G21 G90 {rule}
 M62 P2
 G1 X10 F3000
 X20
@@ -53,17 +50,19 @@ EXPECTED = [
 """Line and word of each event, and the line of the motion that has the setpoint of its time."""
 
 
-@pytest.mark.parametrize("config", [MILL, MERGING], ids=["exact", "merging"])
-def test_each_comes_with_the_first_setpoint_of_the_next_motion(config: object) -> None:
-    result = runner.run(PROGRAM, config, "linuxcnc", trace=True)
+@pytest.mark.parametrize(("rule", "first"), [("G61", 3), ("G64 P0.05 Q0.02", 4)], ids=["exact", "merging"])
+def test_each_comes_with_the_first_setpoint_of_the_next_motion(rule: str, first: int) -> None:
+    """Merged, lines 3 and 4 are one motion."""
+    program = PROGRAM.format(rule=rule)
+    result = runner.run(program, MILL, "linuxcnc", trace=True)
     trace, found = result.trace, []
     for event in result.events:
         row = int(np.searchsorted(trace.t_s, event.time_s - 1e-6))
         found.append((event.line, event.word, int(trace.block[row])))
         if event.word[:3] in ("M62", "M63", "M67"):
             assert row == 0 or trace.block[row - 1] < trace.block[row]  # the first one
-    assert found == EXPECTED
-    closed = runner.run(PROGRAM, config, "linuxcnc")
+    assert found == [(2, "M62 P2", first), *EXPECTED[1:]]
+    closed = runner.run(program, MILL, "linuxcnc")
     assert list(closed.events) == list(result.events)
     assert closed.time_s == result.time_s
 

@@ -98,6 +98,8 @@ def make_fast_work(
         role[_F] = LENGTH
     if not has_diameters(modal):  # else centres and radii are scaled otherwise than positions
         role[[_I, _J, _K, _R]] = LENGTH
+    for code in machine.programs.remaps:
+        role[ord(code[0]) - LETTER_A] = UNKNOWN
     axis_letter = np.full(len(modal.position), NO_AXIS, np.int8)
     said = np.zeros(_SAID_COLUMNS, np.int64)
     said[CENTERS] = 1 << _I | 1 << _J | 1 << _K
