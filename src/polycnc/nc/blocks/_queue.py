@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections import deque
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import NamedTuple
 
 import numpy as np
@@ -277,6 +277,13 @@ class QueueWriter:
 
     def _append_wait(self, duration_s: float, event: int, tag: int, *, passes: bool = False) -> None:
         append_wait(self.seg, self.paths, self.path, duration_s, event, tag, int(passes))
+
+    def with_speed(self, item: QueueItem) -> QueueItem:
+        """Return an item whose feed is the speed that its duration gives it."""
+        if not isinstance(item, Line | Arc) or item.feed.duration_s <= 0.0:
+            return item
+        length = self._line_length(item) if isinstance(item, Line) else self._arc_length(item)
+        return replace(item, feed=Feed(speed_mm_s=length / item.feed.duration_s))
 
     def _line_length(self, item: Line) -> float:
         """Return the length as the kernel counts it: of the axes that count, else of the others."""

@@ -62,6 +62,7 @@ Refused: TypeAlias = Literal[
     "D alone",
     "half a centre",
     "compensation outside X Y and X Z",
+    "feeds of before",
 ]
 _ACTIONS = {action.title: action for action in Action}
 
@@ -294,6 +295,10 @@ class Dialect(StrictModel):
         default=False,
         description="After G40 the next straight move leads out, also one that does not move in the plane.",
     )
+    inverse_time_as_programmed: bool = Field(
+        default=False,
+        description="With radius compensation G93 counts the programmed way, not that of the tool.",
+    )
     merges_lines: bool = Field(
         default=False,
         description="G64 P merges lines into one while every point between lies within Q of it, within P without Q.",
@@ -417,7 +422,9 @@ class Dialect(StrictModel):
         """Return what the compiled kernel needs of the dialect."""
         g_action = np.zeros(G_CODES, np.int16)
         for tenths, action in self._by_code.items():
-            if not (self.notes_codes and action is Action.FEED_PER_MINUTE):  # only ordinary blocks are noted
+            # Only ordinary blocks are noted, and forget the feed.
+            ordinary = self.notes_codes or "feeds of before" in self.refuses
+            if not (ordinary and action is Action.FEED_PER_MINUTE):
                 g_action[tenths] = action
         m_sense = np.full(_LOW_M, NO_SENSE, np.int8)
         for code, m_action in self._by_m.items():

@@ -126,6 +126,7 @@ class RunningProgram:
             "name": owner.parameters.name,
             "named": owner.parameters.named,
             "exists": owner.parameters.exists,
+            "exists_number": owner.parameters.exists_number,
             "PAUSE": Pause.PAUSE,
             "skips": owner.skips,
             "span": self._span,
