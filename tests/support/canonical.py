@@ -71,6 +71,8 @@ def queued_steps(machine: Machine, channel: Channel) -> list[Step]:
         end = tuple(float(value) for value in state.seg.end[k])
         speed = float(segment["feed_mm_s"]) * 60.0
         kind = int(segment["kind"])
+        for number in range(int(segment["events"])):
+            steps += functions(channel.writer.events[int(segment["event"]) + number].word)
         if kind == WAIT:
             if geo[WAIT_EVENT] >= 0:
                 steps += functions(channel.writer.events[int(geo[WAIT_EVENT])].word)

@@ -118,6 +118,9 @@ def _item(channel: Channel, k: int) -> str:
     start, end = state.seg.start[k], state.seg.end[k]
     feed = "" if math.isinf(segment["feed_mm_s"]) else f" F{number(segment['feed_mm_s'] * 60.0)}"
     stop = " stop" if segment["flags"] & STOP else ""
+    first = int(segment["event"])
+    words = [channel.writer.events[first + count].word for count in range(int(segment["events"]))]
+    stop += f" with {', '.join(words)}" if words else ""
     # An arc names both axes of its plane; a move only what moves.
     named = set(state.seg.plane[k, :2].tolist()) if segment["kind"] == ARC else set()
     point = "".join(

@@ -41,15 +41,13 @@ DIALECT = load_dialect("linuxcnc")
 REFUSED: dict[str, str] = {
     "tool-length-probe": "G38.2 to where the probe is",  # it begins where the operator has moved to
     "cone": "there is no axis 'W'",
-    "lathe_g70_71_demo": "G71.1 is not known",
-    "lathe_g7x_face_boring": "G72 is not known",
-    "lathe_g7x_quadrants": "G70 is not known",
     "nestedcall": "'u' is no function",  # an O-word `callsub`, which rs274 refuses too
 }
 """Programs that polycnc refuses, with what its error says."""
 REFUSED_BY_RS274 = {"increment", "probe-hole"}
 """Programs that polycnc takes and rs274 does not."""
 OTHER_WAYS = {
+    "lathe_g70_71_demo": "G70 begins its compensated passes in another way",
     "systems": "rs274 does not print where splines (G5.1) end",
     **dict.fromkeys(("gridprobe", "smartprobe", "x-trim"), "polycnc waits for the probe, rs274 has none"),
 }

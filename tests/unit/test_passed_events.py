@@ -117,7 +117,7 @@ def test_many_events_are_columns_and_read_as_a_list() -> None:
 
 
 def test_after_going_back_the_same_numbers_come_again() -> None:
-    events = EventRun(np.array([3.0, 4.0, 5.0]), np.full(3, -1.0), np.array([7, 8, 9]))
+    events = EventRun(np.array([3.0, 4.0, 5.0]), np.full(3, -1.0), np.full(3, -1.0), np.array([7, 8, 9]))
     pending = PendingEvents()
     pending.add_run(20, events)
     before = pending.snapshot()

@@ -170,6 +170,9 @@ PROGRAM_PREFIX = parts
 [RS274NGC]
 PARAMETER_FILE = sim.var
 SUBROUTINE_PATH = subs:../nowhere:more
+REMAP=M6 modalgroup=6 prolog=change_prolog ngc=toolchange epilog=change_epilog
+REMAP = G88.1 modalgroup=1 argspec=XYZp py=cycle
+REMAP=T prolog=prepare
 [EMCIO]
 TOOL_TABLE = sim.tbl
 [TRAJ]
@@ -185,7 +188,7 @@ MAX_ACCELERATION = 100
 MAX_VELOCITY = 10
 MAX_ACCELERATION = 100
 """
-TABLE = "T3 P1 Z1.5 D.5 ; end mill\n\nT21 P2 X-2 Z+3 D1.25 I10 J20 Q2 ;turning\nT4 P9 Y7\n; nothing\n"
+TABLE = "T3 P1 Z1.5 D.5 ; end mill\n\nT21 P2 X-2 Z+3 D1.25 I10 J20 Q2 ;turning\nT4 P9 Y7 A3\n; nothing\n"
 
 
 def made(folder: Path, unit: str = "mm", table: str | None = TABLE) -> tuple[MachineConfig, str]:
@@ -215,7 +218,7 @@ def test_an_ini_file_brings_its_tools_parameters_folders_and_numbers(
     assert turning.tip == 3
     assert config.programs.folders == tuple(str(tmp_path / each) for each in ("parts", "subs", "more"))
     assert config.programs.settings["TOOLSENSOR"] == {"X": 12.5}
-    for left in ("../nowhere: there is no such folder", "Y of tool 4", "I of tool 21", "J of tool 21"):
+    for left in ("../nowhere: there is no such folder", "A of tool 4", "I of tool 21", "J of tool 21"):
         assert left in text
     (tmp_path / "more" / "deep.ngc").write_text("o<deep> sub\nG0 Z#1\no<deep> endsub\n")
     end = ends("o<deep> call [#31]\nG0 X#<_ini[TOOLSENSOR]X>", config)
@@ -237,3 +240,28 @@ def test_files_that_are_not_there_are_left_out(tmp_path: Path) -> None:
     assert "EMCIO.TOOL_TABLE = sim.tbl: there is no such file" in text
     (tmp_path / "sim.var").unlink()
     assert "RS274NGC.PARAMETER_FILE = sim.var: there is no such file" in machine_from(tmp_path / "sim.ini")
+
+
+@pytest.mark.parametrize(
+    ("program", "what"),
+    [
+        ("G0 X1\nM6", r"2:1: M6 is remapped on this control: line 8 of sim.ini \(ngc=toolchange\)"),
+        ("G0 X1\nG88.1 X2", r"2:1: G88.1 is remapped on this control: line 9 of sim.ini"),
+        ("G0 X1\nX2 T3", r"2:4: T is remapped on this control: line 10 of sim.ini"),
+    ],
+)
+def test_codes_that_an_ini_file_remaps_are_refused_by_name(program: str, what: str, tmp_path: Path) -> None:
+    config, _ = made(tmp_path)
+    with pytest.raises(polycnc.ProgramError, match=what):
+        ends(program, config)
+    assert ends("M61 Q3\nG0 X1 Z3", config)[:2] == [3.0, 3.0]
+
+
+def test_a_tool_shifts_y(tmp_path: Path) -> None:
+    config, text = made(tmp_path)
+    assert "A of tool 4: tools shift X, Y and Z" in text
+    config = config.model_copy(
+        update={"axes": (*config.axes, config.axes[0].model_copy(update={"name": "Y"}))}
+    )
+    program = "G43 H4\nG0 Y1\nG0 X#5402\nG10 L1 P4 Y3\nG43.2 H4\nG0 Y1 Z#5402"
+    assert ends(f"M61 Q4\n{program}", config) == pytest.approx([9.0, 3.0, 11.0])

@@ -49,7 +49,9 @@ def let_pass(_: Passed | PassedRun) -> None:
 class PassedEvents:
     """Let a path pass events for `told`, which gets them in their order; without it the path stops at each.
 
-    The moment of the run keeps the last one, the tool times, and how many points of rest the path has left at once.
+    Those in step with motion stop it never: without `told`, `on_event` gets them in their cycle, and its answer counts
+    for nothing. The moment of the run keeps the last one, the tool times, and how many points of rest the path has left
+    at once.
     """
 
     def __init__(self, machine: Machine, path: int) -> None:
@@ -57,6 +59,7 @@ class PassedEvents:
         self._path = path
         self._row = machine.state.paths.row[path]
         self.told: OnPassed | None = None
+        self.on_event: Callable[[Event], object] | None = None
 
     def begin(self, moment: RunProgress) -> None:
         """Let events pass from now on."""
@@ -75,12 +78,15 @@ class PassedEvents:
 
     def take(self, channel: Channel, moment: RunProgress) -> None:
         """Take note of what has been passed, and hand it on."""
-        count, told = int(self._row["passed"]), self.told
-        if not count or told is None:
+        count, told = int(self._row["passed"]), self.told or self._tell_one_by_one
+        if not count:
             return
         self._row["passed"] = 0
         machine = self._machine
         rows = machine.state.paths.passed[self._path, :count]
+        at_rest = rows[-1, kernel.PASSED_COUNT] == 0.0
+        rows = np.repeat(rows, np.maximum(rows[:, kernel.PASSED_COUNT], 1.0).astype(np.int64), axis=0)
+        count = len(rows)
         cycles = rows[:, kernel.PASSED_CYCLE].astype(np.int64)
         cycles += machine.clock.cycles - int(machine.state.clock[0]["cycle"])
         _note_rests(moment, cycles[rows[:, kernel.PASSED_AT_ONCE] != 0.0])
@@ -99,8 +105,14 @@ class PassedEvents:
                 told(PassedRun(found, time_s[at : at + len(found)], moved[at : at + len(found)]))
                 at += len(found)
                 tag = int(found.tag[-1])
-        if cycles[-1] == machine.clock.cycles and self._row["state"] == kernel.READY:
+        if at_rest and cycles[-1] == machine.clock.cycles and self._row["state"] == kernel.READY:
             moment.met = int(self._row["head"]), tag
+
+    def _tell_one_by_one(self, passed: Passed | PassedRun) -> None:
+        if self.on_event is not None:
+            each = [passed.event] if isinstance(passed, Passed) else passed.events
+            for event in each:
+                self.on_event(event)
 
 
 def _note_rests(moment: RunProgress, cycles: npt.NDArray[np.int64]) -> None:

@@ -78,7 +78,7 @@ class ProgramRun:
         self._runner = runner = PathRunner(machine, channel, options, self._moment, ahead=ahead)
         runner.rows = rows
         runner.events.on_event = on_event
-        runner.passed.told = on_passed
+        runner.passed.told, runner.passed.on_event = on_passed, on_event
         self.events: PathEvents = runner.events
         self.feed: PathFeed = runner.feed
         self.stopper: Stopper = runner.stopper

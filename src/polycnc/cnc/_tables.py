@@ -40,6 +40,7 @@ class Tool:
     z_mm: float = 0.0
     wear_x_mm: float = 0.0
     wear_z_mm: float = 0.0
+    y_mm: float = 0.0
 
 
 _FIELDS = tuple(field.name for field in fields(Tool))

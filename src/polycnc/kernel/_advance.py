@@ -6,6 +6,7 @@ around `cycle`, or around its two halves where it has to see or change the setpo
 
 from __future__ import annotations
 
+from polycnc.kernel._in_step import note_begun
 from polycnc.kernel._interpolate import path_cycle, settle, skip_path
 from polycnc.kernel._jit import compiled, entry
 from polycnc.kernel._path import EVENT, IDLE, READY, RESTED
@@ -46,8 +47,12 @@ def _run_paths(state: KernelState, dt: float) -> None:
         row = state.paths.row[g]
         if row["state"] == IDLE:
             continue
-        if path_cycle(state.seg, state.paths, g, dt) == RESTED:
-            _settle_path(state, g, state.clock[0]["cycle"] + 1)
+        rested = path_cycle(state.seg, state.paths, g, dt) == RESTED
+        now = state.clock[0]["cycle"] + 1
+        if row["in_step"] > 0 and note_begun(state.seg, state.paths, g, now):
+            state.clock[0]["raised"] |= PATH_EVENT
+        if rested:
+            _settle_path(state, g, now)
         if row["closed"] == 0 and row["planned"] - row["head"] <= row["low_water"]:
             state.clock[0]["raised"] |= QUEUE_LOW
 

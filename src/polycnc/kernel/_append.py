@@ -9,7 +9,7 @@ from __future__ import annotations
 from polycnc.kernel._axis_limits import AxisLimits
 from polycnc.kernel._blend_arcs import round_to_arc
 from polycnc.kernel._jit import compiled, entry
-from polycnc.kernel._lines import appended, mark_last, set_ends
+from polycnc.kernel._lines import appended, attach, mark_last, set_ends
 from polycnc.kernel._overlap import overlap_corner
 from polycnc.kernel._path import Paths, slot
 from polycnc.kernel._segments import STOP, Floats, Segments, set_arc, set_circle3d, set_spline, set_wait
@@ -66,6 +66,7 @@ def append_arc(
         return False
     set_ends(seg.row, paths.row, g, flags)
     appended(seg.end, paths.row, paths.queued, g, k)
+    attach(seg.row, paths.row, g)
     overlap_corner(seg, paths, g, limits)
     return True
 
@@ -94,6 +95,7 @@ def append_circle3d(
         return False
     set_ends(seg.row, paths.row, g, flags)
     appended(seg.end, paths.row, paths.queued, g, k)
+    attach(seg.row, paths.row, g)
     return True
 
 
@@ -116,6 +118,7 @@ def append_spline(
     set_spline(seg, k, paths.queued[g], end, axis_p, axis_q, span, length_mm, speed_mm_s, flags, tag)
     set_ends(seg.row, paths.row, g, flags)
     appended(seg.end, paths.row, paths.queued, g, k)
+    attach(seg.row, paths.row, g)
 
 
 @entry

@@ -16,6 +16,7 @@ import numpy as np
 from polycnc.kernel._braking import GONE, SPEED_NOW
 from polycnc.kernel._follow import follow_cycle_along, follows, start_following
 from polycnc.kernel._geometry import segment_point
+from polycnc.kernel._in_step import note_begun
 from polycnc.kernel._jit import compiled, entry
 from polycnc.kernel._lookahead import window_speed
 from polycnc.kernel._path import (
@@ -26,6 +27,7 @@ from polycnc.kernel._path import (
     MOST_PASSED,
     NO_LIMIT,
     PASSED_AT_ONCE,
+    PASSED_COUNT,
     PASSED_CYCLE,
     PASSED_EVENT,
     PASSED_FEED_S,
@@ -77,6 +79,7 @@ def _may_pass(seg: Segments, paths: Paths, g: int, k: int, now: int) -> bool:
         path["spare"] -= 1
     row, totals = paths.passed[g, path["passed"]], paths.totals[g]
     row[PASSED_EVENT], row[PASSED_CYCLE], row[PASSED_AT_ONCE] = seg.geo[k, WAIT_EVENT], now, at_once
+    row[PASSED_COUNT] = 0.0
     row[PASSED_FEED_S], row[PASSED_RAPID_S] = totals[FEED_S], totals[RAPID_S]
     path["passed"] += 1
     return True
@@ -319,7 +322,8 @@ def skip_path(seg: Segments, paths: Paths, g: int, dt: float, until: int, cycle:
     """Go along path `g` from a cycle on while its segment count is below `until`; return the cycles taken.
 
     The cycles are those that `path_cycle` takes, to the last one, but only the last position is evaluated: the
-    samples inside a segment are counted at once. Stops at an event, which then stands in the path's row.
+    samples inside a segment are counted at once. Stops at an event, which then stands in the path's row, and where
+    `note_begun` asks for it.
     """
     path = paths.row[g]
     taken = 0
@@ -333,6 +337,8 @@ def skip_path(seg: Segments, paths: Paths, g: int, dt: float, until: int, cycle:
         if next_sample(seg, paths, g, dt) == STILL:
             break
         taken += 1
+        if path["in_step"] > 0 and note_begun(seg, paths, g, cycle + taken):
+            break
     if path["head"] > 0 or path["state"] > READY:
         place_path(seg, paths, g, dt)
     return taken

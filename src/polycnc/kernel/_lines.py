@@ -27,6 +27,19 @@ def appended(ends: Floats, path: Rows, queued: Floats, g: int, k: int) -> None:
 
 
 @compiled
+def attach(row: Rows, path: Rows, g: int) -> None:
+    """Let the events that wait for the next motion of path `g` come with the last segment appended."""
+    events = path[g]["next_events"]
+    if events > 0:
+        k = slot_of(path, g, path[g]["tail"] - 1)
+        row[k]["event"], row[k]["events"] = path[g]["next_event"], events
+        path[g]["next_events"] = 0
+        if path[g]["in_step"] == 0:
+            path[g]["looked_at"] = path[g]["tail"] - 1
+        path[g]["in_step"] += 1
+
+
+@compiled
 def set_ends(row: Rows, path: Rows, g: int, flags: int) -> None:
     """Let a path come to rest where positioning meets feed motion, and in the corners of an exact path."""
     if path[g]["tolerance_mm"] < 0.0:
@@ -67,4 +80,5 @@ def add_line(
         return False
     set_ends(row, path, g, flags)
     appended(ends, path, queued, g, k)
+    attach(row, path, g)
     return True

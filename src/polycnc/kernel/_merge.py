@@ -67,8 +67,9 @@ def merge_line(
     p, q, r = counting_axes(seg, k, limits, end)
     if p < 0 or not _within(paths, g, seg.start[k], end, p, q, r):
         return NOT_MERGED
-    before = int(line["tag"])
+    before, events = int(line["tag"]), line["events"]
     set_line(seg.row, seg.start, seg.end, k, limits.feed_axis, seg.start[k], end, speed_mm_s, flags, tag)
+    line["events"] = events
     for i in range(end.shape[0]):
         paths.queued[g, i] = end[i]
     _keep_point(paths, g, end, p, q, r)
@@ -105,6 +106,7 @@ def close_line(seg: Segments, paths: Paths, g: int, limits: AxisLimits) -> None:
     k = slot(paths, g, row["tail"] - 1)
     line = seg.row[k]
     speed, flags, tag = line["feed_mm_s"], int(line["flags"]), int(line["tag"])
+    event, events = line["event"], line["events"]
     end = paths.blend[g, SCRATCH_POINTS : SCRATCH_POINTS + seg.end.shape[1]]
     for i in range(end.shape[0]):
         end[i] = seg.end[k, i]
@@ -114,6 +116,8 @@ def close_line(seg: Segments, paths: Paths, g: int, limits: AxisLimits) -> None:
     add_line(
         seg.row, seg.start, seg.end, paths.row, paths.queued, g, limits.feed_axis, end, speed, flags, tag
     )
+    line = seg.row[slot(paths, g, row["tail"] - 1)]
+    line["event"], line["events"] = event, events
     overlap_corner(seg, paths, g, limits)
 
 

@@ -232,6 +232,7 @@ def _copy(seg: Segments, k: int, to: int) -> None:
     """Copy segment `k` to another slot."""
     row, copy = seg.row[k], seg.row[to]
     set_common(seg, to, seg.start[k], seg.end[k], row["feed_mm_s"], int(row["flags"]), int(row["tag"]))
+    copy["event"], copy["events"] = row["event"], row["events"]
     copy["kind"], copy["length"], copy["end_speed"] = row["kind"], row["length"], row["end_speed"]
     for j in range(3):
         seg.plane[to, j] = seg.plane[k, j]

@@ -42,9 +42,10 @@ SCRATCH_POINTS = (
 RAPID_S, FEED_S, WAIT_S, RAPID_LENGTH, FEED_LENGTH, SEGMENTS, TOP_SPEED = 0, 1, 2, 3, 4, 5, 6
 TOTALS = 7
 
-# Columns of `passed`: what an event is, when it was passed, and the totals of the path there.
-PASSED_EVENT, PASSED_CYCLE, PASSED_FEED_S, PASSED_RAPID_S, PASSED_AT_ONCE = 0, 1, 2, 3, 4
-PASSED_COLUMNS = 5
+# Columns of `passed`: what an event is, when it was passed, the totals of the path there, whether it came at a point
+# of rest to which no time had passed, and how many events came as a motion began, 0 for one at a point of rest.
+PASSED_EVENT, PASSED_CYCLE, PASSED_FEED_S, PASSED_RAPID_S, PASSED_AT_ONCE, PASSED_COUNT = 0, 1, 2, 3, 4, 5
+PASSED_COLUMNS = 6
 MOST_PASSED = 1024
 RESTS_PER_CYCLE = 16
 """Points of rest at which no time passes, as functions that are answered at once, that a path leaves in one cycle."""
@@ -66,6 +67,10 @@ PATH_ROW = np.dtype(
         ("blocks", np.int64),  # blocks whose last segment was left since the path began
         ("cycles", np.int64),  # samples taken in the running segment
         ("event", np.int64),  # event last met, -1 none
+        ("next_event", np.int64),  # the first of the events that come when the motion appended next begins
+        ("next_events", np.int64),  # how many
+        ("in_step", np.int64),  # motions queued with events that have not begun
+        ("looked_at", np.int64),  # segments before this count have none of them
         ("passes", np.int64),  # events that may be passed are noted in `passed`, while it has room
         ("passed", np.int64),  # so many have been noted
         ("passed_at", np.int64),  # the cycle of the last one, or from which on the path was let go

@@ -214,6 +214,7 @@ def drop_queue(seg: Segments, paths: Paths, g: int) -> None:
     tag = path["tag"]
     path["tail"] = path["head"]
     path["merged"] = 0
+    path["next_events"], path["in_step"] = 0, 0
     for i in range(paths.queued.shape[1]):
         paths.queued[g, i] = paths.position[g, i]
     set_wait(seg, slot(paths, g, path["head"]), paths.queued[g], 0.0, -1, tag, 0)  # where it stands

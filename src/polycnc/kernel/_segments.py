@@ -76,6 +76,8 @@ SEGMENT_ROW = np.dtype(
         ("out", np.float64),  # planned speed at the end
         ("bound", np.float64),  # earlier planned speed there, if too close to reach a lower one
         ("tag", np.int64),  # the caller's name for the segment: what block it belongs to
+        ("event", np.int64),  # the first of the events that come when it begins
+        ("events", np.int32),  # how many
         ("kind", np.int8),
         ("flags", np.int8),
     ],
@@ -133,6 +135,7 @@ def _set_common(
     row[k]["feed_mm_s"] = speed_mm_s
     row[k]["flags"] = flags
     row[k]["tag"] = tag
+    row[k]["events"] = 0
     row[k]["end_speed"] = -1.0
     row[k]["kept_in"] = 0.0
     row[k]["kept_out"] = 0.0

@@ -39,6 +39,12 @@ class ProgramsConfig(StrictModel):
         "`[io]` are read as they are.",
     )
 
+    remaps: Annotated[dict[str, str], Field(max_length=1000)] = Field(
+        default={},
+        description='Codes that the control defines anew, and where: `"M6" = "line 12 of mill.ini"`. They are '
+        "refused.",
+    )
+
     def beside(self, folder: Path) -> ProgramsConfig:
         """Return the same with files and folders as seen from where polycnc is started."""
         file = self.parameter_file

@@ -24,6 +24,7 @@ class ToolConfig(StrictModel):
         description="Where the tip of a turning tool lies, as FANUC controls number it; 0 and 9: its middle.",
     )
     x_mm: float = Field(default=0.0, description="Offset of a turning tool along X, a radius.")
+    y_mm: float = Field(default=0.0, description="Offset along Y, in LinuxCNC's language.")
     z_mm: float = Field(default=0.0, description="Offset of a turning tool along Z.")
     wear_x_mm: float = Field(default=0.0, description="Added to the offset along X.")
     wear_z_mm: float = Field(default=0.0, description="Added to the offset along Z.")

@@ -1,7 +1,7 @@
 """Part programs: block scanner, dialects, modal state, coordinate systems, tool compensation, the channel."""
 
 from polycnc.nc.blocks._channel_state import ChannelState, of_another_channel
-from polycnc.nc.blocks._events import Event, EventRun, function_word
+from polycnc.nc.blocks._events import Event, EventRun, run_word
 from polycnc.nc.blocks._messages import Message
 from polycnc.nc.blocks._moves import Stop
 from polycnc.nc.blocks._probe import Probe
@@ -105,10 +105,10 @@ __all__ = [
     "Zero",
     "choose_dialect",
     "dialect_for",
-    "function_word",
     "language_for",
     "line_of",
     "load_dialect",
     "of_another_channel",
+    "run_word",
     "scan_block",
 ]

@@ -102,8 +102,8 @@ class MachiningCollector:
         tool = self._config.tools.get(words.tool, ToolConfig())
         length = tool.length_mm + tool.wear_length_mm
         if self._lathe:
-            return [tool.x_mm + tool.wear_x_mm, 0.0, length + tool.z_mm + tool.wear_z_mm], words.tool
-        return [0.0, 0.0, length], words.tool
+            return [tool.x_mm + tool.wear_x_mm, tool.y_mm, length + tool.z_mm + tool.wear_z_mm], words.tool
+        return [tool.x_mm, tool.y_mm, length], words.tool
 
     def _place(self, block: ExecutedBlock) -> SourcePosition | None:
         text = self.texts.get(block.program)

@@ -11,7 +11,7 @@ from typing import overload
 import numpy as np
 import numpy.typing as npt
 
-from polycnc.nc import LINE_MASK, EventRun, function_word
+from polycnc.nc import LINE_MASK, EventRun, run_word
 
 
 @dataclass(frozen=True, slots=True)
@@ -29,7 +29,7 @@ class RunEvents(Sequence[RunEvent]):
     def __init__(self) -> None:
         self._words: dict[str, int] = {}
         self._names: list[str] = []
-        self._known: dict[tuple[float, float], int] = {}  # of runs of plain blocks
+        self._known: dict[tuple[float, float, float], int] = {}  # of runs of plain blocks
         self._time_s = array("d")
         self._line = array("q")
         self._word = array("q")
@@ -45,10 +45,10 @@ class RunEvents(Sequence[RunEvent]):
         self._time_s.frombytes(time_s.tobytes())
         self._line.frombytes((events.tag & LINE_MASK).tobytes())
         known, numbers = self._known, self._word
-        for said in zip(events.speed.tolist(), events.code.tolist(), strict=True):
+        for said in zip(events.speed.tolist(), events.code.tolist(), events.number.tolist(), strict=True):
             number = known.get(said)
             if number is None:
-                number = known[said] = self._number(function_word(*said))
+                number = known[said] = self._number(run_word(*said))
             numbers.append(number)
 
     def _number(self, word: str) -> int:

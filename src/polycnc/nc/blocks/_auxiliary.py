@@ -268,7 +268,9 @@ def _wait(block: BlockContext, m: MWord) -> Wait:
         return _change_tool(block, name)
     if m.action is MAction.SET_TOOL:
         return _set_tool(block, m)
-    if m.action is MAction.AUXILIARY_WORDS or m.action in _OUTPUTS:
+    if m.action is MAction.OUTPUT_IN_STEP:
+        return Wait(0.0, block.line, (_with_words(name, _parameters(block, m)),), passes=True)
+    if m.action is MAction.AUXILIARY_WORDS or m.action is MAction.OUTPUT_AT_ONCE:
         return Wait(times.auxiliary_s, block.line, (_with_words(name, _parameters(block, m)),))
     if m.action is MAction.RIGID_TAP:
         turned = block.after.spindle.direction != 0

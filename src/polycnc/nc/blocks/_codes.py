@@ -14,6 +14,7 @@ from polycnc.nc.blocks import (
     _non_modal,
     _nurbs,
     _placing,
+    _profile_cycles,
     _splines,
     _turning_blocks,
     _turning_cycles,
@@ -25,7 +26,7 @@ from polycnc.nc.blocks._words import GWord
 from polycnc.nc.modal._actions import Action, Family
 
 CODES: Mapping[Action, Handler] = dict(
-    handlers(_contour_cycles, _frames, _modal_words, _non_modal, _placing, _turning_cycles)
+    handlers(_contour_cycles, _frames, _modal_words, _non_modal, _placing, _profile_cycles, _turning_cycles)
 )
 """What carries a code out; its row is in `Action`. Motions have modes, tool compensation and IGNORED codes steps."""
 

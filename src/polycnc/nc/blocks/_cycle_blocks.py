@@ -208,7 +208,7 @@ def _words(block: BlockContext, axes: tuple[int, int, int]) -> CycleWords:
         value = block.words.length(letter)
         return None if value is None else value * scale
 
-    # R is a radius also where the axis has diameters.
+    # R and Q are radii also where the axis has diameters.
     retract = None if "R" in block.after.axis_names else length("R", length_scale(modal))
     depth = length(block.after.axis_names[axes[2]])
     back = length("K") if is_back_bore else None
@@ -226,7 +226,7 @@ def _words(block: BlockContext, axes: tuple[int, int, int]) -> CycleWords:
     return CycleWords(
         depth_mm=depth,
         retract_mm=retract,
-        peck_mm=length("Q") if pecks else None,
+        peck_mm=length("Q", length_scale(modal)) if pecks else None,
         dwell_s=_dwell(block, cycle),
         shift_mm=None if shift_p is None and shift_q is None else (shift_p or 0.0, shift_q or 0.0),
         back_mm=back,

@@ -45,12 +45,31 @@ def function_word(speed: float, code: float) -> str:
     return " ".join(filter(None, said))
 
 
+def output_word(value: float, code: float, number: float) -> str:
+    """Return what the output of an M code is reported as: P, or the number E and its value Q."""
+    words = f"E{number:.0f} Q{code_text(value)}" if number >= 0.0 else f"P{value:.0f}"
+    return f"M{code:.0f} {words}"
+
+
+def run_word(value: float, code: float, number: float) -> str:
+    """Return what an event of a run is reported as, see `EventRun`."""
+    return function_word(value, code) if number == FUNCTION else output_word(value, code, number)
+
+
+FUNCTION = -1.0
+
+
 @dataclass(frozen=True, eq=False, slots=True)
 class EventRun:
-    """Hold the events of a run of plain blocks as columns: what S and M say, negative for nothing, and the tags."""
+    """Hold the events of a run of plain blocks as columns: what S and M say, negative for nothing, and the tags.
+
+    `number` is FUNCTION for these. Of an output it is the number E, and `speed` its value Q; below FUNCTION it has
+    none, and `speed` is its P.
+    """
 
     speed: Floats
     code: Floats
+    number: Floats
     tag: npt.NDArray[np.int64]
 
     def __len__(self) -> int:
@@ -58,11 +77,13 @@ class EventRun:
 
     def word(self, at: int) -> str:
         """Return an event as it is reported."""
-        return function_word(float(self.speed[at]), float(self.code[at]))
+        return run_word(float(self.speed[at]), float(self.code[at]), float(self.number[at]))
 
     def part(self, first: int, after: int) -> EventRun:
         """Return some of the events."""
-        return EventRun(self.speed[first:after], self.code[first:after], self.tag[first:after])
+        return EventRun(
+            *(each[first:after] for each in (self.speed, self.code, self.number)), self.tag[first:after]
+        )
 
     def __getitem__(self, at: int) -> Event:
         tag = int(self.tag[at])

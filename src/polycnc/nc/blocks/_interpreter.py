@@ -244,6 +244,8 @@ class Interpreter:
         stage = state.compensation
         if stage.active:
             block.compensated |= any(isinstance(item, (Line, Arc)) for item in block.items)
+            if block.dialect.inverse_time_as_programmed:
+                block.items = [self._queue.with_speed(item) for item in block.items]
             block.items = [out for item in block.items for out in _with_tip(state, item, stage.push(item))]
             self._check_path(state, block.items)
         whole = state.modal.whole

@@ -92,7 +92,7 @@ def select_plane(block: BlockContext, g: GWord) -> None:
 def set_feed_mode(block: BlockContext, g: GWord) -> None:
     """Carry out what F means; a number that meant something else is none."""
     modal = block.after.modal
-    if g.value != modal.whole[FEED_MODE]:
+    if g.value != modal.whole[FEED_MODE] or "feeds of before" in block.dialect.refuses:
         modal.real[FEED] = 0.0
     modal.whole[FEED_MODE] = g.value
 

@@ -105,7 +105,8 @@ class Spline:
 class Wait:
     """Let time pass with all axes at rest, then raise the events (auxiliary functions) in order.
 
-    One that `passes` stops nothing: moves before and behind it differ in the power of a laser.
+    One that `passes` stops nothing: moves before and after it differ in the power of a laser, and its events are raised
+    when the next move begins.
 
     A `stop` is a point where the program may stand: then preparation goes on when whoever runs the path says so.
     `message` is what the operator is told there.

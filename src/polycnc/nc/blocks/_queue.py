@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections import deque
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import NamedTuple
 
 import numpy as np
@@ -103,6 +103,7 @@ class QueueWriter:
         self.backlog.clear()
         self.events.clear()
         self.probes.clear()
+        self.paths.row[self.path]["next_events"] = 0
         self.stops = 0
         if self.marks is not None:
             self.marks.clear()
@@ -216,7 +217,9 @@ class QueueWriter:
 
     def _put_wait(self, item: Wait) -> None:
         if item.passes:
+            self._put_in_step([Event(word, item.line, tag=item.tag) for word in item.events])
             return
+        in_step = self.withdraw_in_step()
         words = item.events or (("",) if item.stop is not None else ())
         answered = self.answers and bool(item.events)
         stands = self.stands_at_stops and item.stop in (Stop.PROGRAM, Stop.OPTIONAL)
@@ -231,6 +234,23 @@ class QueueWriter:
             self.stops += 1
         if (item.duration_s > 0.0 or not words) and not answered:
             self._append_wait(item.duration_s, NO_EVENT, item.tag)
+        self._put_in_step(in_step)
+
+    def _put_in_step(self, events: list[Event]) -> None:
+        """Let events come when the next motion begins, after those that wait for it already."""
+        row = self.paths.row[self.path]
+        for event in events:
+            if not row["next_events"]:
+                row["next_event"] = self._next_event
+            row["next_events"] += 1
+            self._note(event)
+
+    def withdraw_in_step(self) -> list[Event]:
+        """Take back the events that wait for the next motion, whose numbers are the last ones."""
+        row = self.paths.row[self.path]
+        waiting, row["next_events"] = int(row["next_events"]), 0
+        self._next_event -= waiting
+        return [self.events.pop(self._next_event + place) for place in range(waiting)]
 
     @property
     def next_event(self) -> int:
@@ -238,9 +258,12 @@ class QueueWriter:
         return self._next_event
 
     def note_run(self, run: EventRun) -> None:
-        """Take the events of a run of plain blocks, which are in the queue, from `next_event` on."""
-        self.events.add_run(self._next_event, run)
-        self._next_event += len(run)
+        """Take the events of a run of plain blocks, from `next_event` on; the last ones may wait for a motion yet."""
+        queued = len(run) - min(int(self.paths.row[self.path]["next_events"]), len(run))
+        self.events.add_run(self._next_event, run.part(0, queued))
+        self._next_event += queued
+        for at in range(queued, len(run)):
+            self._note(run[at])
 
     def _note(self, event: Event) -> None:
         self.events[self._next_event] = event
@@ -254,6 +277,13 @@ class QueueWriter:
 
     def _append_wait(self, duration_s: float, event: int, tag: int, *, passes: bool = False) -> None:
         append_wait(self.seg, self.paths, self.path, duration_s, event, tag, int(passes))
+
+    def with_speed(self, item: QueueItem) -> QueueItem:
+        """Return an item whose feed is the speed that its duration gives it."""
+        if not isinstance(item, Line | Arc) or item.feed.duration_s <= 0.0:
+            return item
+        length = self._line_length(item) if isinstance(item, Line) else self._arc_length(item)
+        return replace(item, feed=Feed(speed_mm_s=length / item.feed.duration_s))
 
     def _line_length(self, item: Line) -> float:
         """Return the length as the kernel counts it: of the axes that count, else of the others."""

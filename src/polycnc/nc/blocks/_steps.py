@@ -26,7 +26,13 @@ from polycnc.nc.blocks._nurbs import refuse_others
 from polycnc.nc.blocks._outcomes import JUMPS
 from polycnc.nc.blocks._program_words import outcome
 from polycnc.nc.blocks._tool_words import compensate_length, compensate_radius
-from polycnc.nc.blocks._word_checks import leave_out, refuse_contradictions, refuse_unused, take_parameters
+from polycnc.nc.blocks._word_checks import (
+    leave_out,
+    refuse_contradictions,
+    refuse_remaps,
+    refuse_unused,
+    take_parameters,
+)
 from polycnc.nc.blocks._words import code_text
 from polycnc.nc.modal._actions import Action, Family, Group
 from polycnc.nc.modal._modal import (
@@ -56,6 +62,8 @@ def words(block: BlockContext) -> None:
     if block.block.flags & MESSAGE and block.block.message:
         block.note(f"MSG: {block.block.message}")
     found = block.words
+    if remaps := block.after.machine.programs.remaps:
+        refuse_remaps(block, remaps)
     block.rules.sorter.sort(found, block.block, block.text, block.problem)
     if len(found.g) > 1:
         refuse_contradictions(block)
@@ -145,6 +153,9 @@ def length(block: BlockContext) -> None:
 
 def radius(block: BlockContext) -> None:
     """Carry out radius compensation."""
+    alone = block.words.g.get(Group.NON_MODAL)
+    if alone is not None and alone.action.family is Family.PROFILE:
+        return  # D is a distance
     if "D" in block.words.by_letter or Group.RADIUS_COMPENSATION in block.words.g:
         compensate_radius(block)
 

@@ -9,7 +9,7 @@ from polycnc.nc.blocks._motion import axis_words, named_axes
 from polycnc.nc.blocks._word_checks import refuse_rest
 from polycnc.nc.blocks._words import GWord, whole_number
 from polycnc.nc.modal._actions import Action, Group
-from polycnc.nc.modal._modal import PLANE, PLANE_ZX, length_scale
+from polycnc.nc.modal._modal import NO_AXIS, PLANE, PLANE_ZX, length_scale
 
 OFFSETS = (Action.TOOL_OFFSET, Action.TOOL_OFFSET_VALUES, Action.TOOL_OFFSET_ADD)
 TURNED_TIPS = (0, 4, 3, 2, 1, 5, 8, 7, 6, 9)
@@ -17,7 +17,7 @@ TURNED_TIPS = (0, 4, 3, 2, 1, 5, 8, 7, 6, 9)
 
 Source: LinuxCNC user manual, "Lathe User Information", "Tool Orientation".
 """
-_FIELDS = {"X": "x_mm", "Z": "length_mm"}
+_FIELDS = {"X": "x_mm", "Y": "y_mm", "Z": "length_mm"}
 REFERENCE_SYSTEM = "G59.3"
 """The work offset whose zero is a known point of the fixture. Source: LinuxCNC G-code manual, "G10 L11"."""
 
@@ -41,8 +41,9 @@ def tool_data(block: BlockContext, tool: int) -> ToolConfig:
 def offsets_of(state: ChannelState, tool: ToolConfig) -> dict[int, float]:
     """Return what a tool shifts each axis by (mm)."""
     letters = state.modal.letter_axis
-    axes = {"X": tool.x_mm + tool.wear_x_mm, "Z": tool.length_mm + tool.wear_length_mm}
-    return {int(letters[ord(name) - ord("A")]): value for name, value in axes.items()}
+    axes = {"X": tool.x_mm + tool.wear_x_mm, "Y": tool.y_mm, "Z": tool.length_mm + tool.wear_length_mm}
+    found = {int(letters[ord(name) - ord("A")]): value for name, value in axes.items()}
+    return {axis: value for axis, value in found.items() if axis != NO_AXIS}
 
 
 def shift_by_tool(block: BlockContext, g: GWord) -> None:
@@ -124,7 +125,7 @@ def set_tool(block: BlockContext, g: GWord, table: int, number: int) -> None:
         name = state.axis_names[axis]
         if name not in _FIELDS:
             raise block.problem(
-                f"a tool has no offset along {name}", "Tools shift X and Z.", block.words.first(name)
+                f"a tool has no offset along {name}", "Tools shift X, Y and Z.", block.words.first(name)
             )
         changes[_FIELDS[name]] = value if table == 1 else float(ways[axis]) - value
     if (radius := block.words.length("R")) is not None:
@@ -134,6 +135,6 @@ def set_tool(block: BlockContext, g: GWord, table: int, number: int) -> None:
     if (tip := block.words.take("Q")) is not None:
         changes["tip"] = TURNED_TIPS[whole_number(tip, "where a tip lies", block.problem, 9)]
     if not changes:
-        raise block.problem(f"G{g.code} L{table} without a value", "Add X, Z, R or Q.", g.word)
+        raise block.problem(f"G{g.code} L{table} without a value", "Add X, Y, Z, R or Q.", g.word)
     refuse_rest(block, g)
     tables.set_tool(number, **changes)

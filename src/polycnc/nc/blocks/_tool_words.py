@@ -82,6 +82,8 @@ def compensate_radius(block: BlockContext) -> None:
         if state.side == 0:
             block.change = state.compensation.cancel
             return
+        if given is not None and block.words.by_letter["D"].value < 0.0:
+            state.side = -state.side
     elif state.side == 0 or d_word is None:
         return
     plane = block.plane("radius compensation", None if g is None else g.word)

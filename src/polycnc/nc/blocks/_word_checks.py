@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 from polycnc.nc.blocks._block import BlockContext
 from polycnc.nc.blocks._channel_state import of_another_channel
 from polycnc.nc.blocks._words import GWord, code_text
@@ -36,6 +38,23 @@ def leave_out(block: BlockContext) -> None:
         block.note(f"{code} is left out, as told")
     if block.words.takes_words and block.words.g.keys().isdisjoint(_WORDS_OF_THEIR_OWN):
         block.words.take_all()
+
+
+def refuse_remaps(block: BlockContext, remaps: Mapping[str, str]) -> None:
+    """Refuse codes that the control defines anew: words alone (T) and codes (M6, G88.1).
+
+    Raises:
+        ProgramError: there is one.
+    """
+    for word in block.block.words:
+        for code in (word.letter, f"{word.letter}{code_text(word.value)}"):
+            if code in remaps:
+                raise block.problem(
+                    f"{code} is remapped on this control: {remaps[code]}",
+                    f"Remaps are not carried out. Remove {code} from [programs] remaps of the machine file to have it "
+                    "as the language has it.",
+                    word,
+                )
 
 
 def refuse_contradictions(block: BlockContext) -> None:

@@ -75,7 +75,7 @@ class Preparation:
                 self.close()
                 return
             self._calls.begin()
-        if prepared.writer.backlog and not prepared.writer.catch_up():
+        if prepared.writer.backlog and not self._catch_up():
             return
         most = None if blocks is None else reader.blocks + blocks
         while not self.over and (most is None or reader.blocks < most) and prepared.has_room():
@@ -168,7 +168,10 @@ class Preparation:
             return
         flags = MESSAGE if item.message else PLAIN
         end = text.next_line(item.offset)
-        block = Block(item.words, flags, item.skip_level, item.offset, end, item.line, message=item.message)
+        block = Block(
+            item.words, flags, item.skip_level, item.offset, end, item.line,
+            message=item.message, profile=item.profile,
+        )  # fmt: skip
         self._execute(text, block)
 
     # ------------------------------------------------------------------ where it goes on
@@ -225,6 +228,20 @@ class Preparation:
             self._interpreter.finish()
         except ProgramError as error:
             self._note(error)
+        self._drop_in_step()
+
+    def _catch_up(self) -> bool:
+        """Put what waits for room, and return whether nothing waits any more."""
+        done = self._prepared.writer.catch_up()
+        if done and self.over:
+            self._drop_in_step()
+        return done
+
+    def _drop_in_step(self) -> None:
+        """Drop functions that wait for a move when none is left."""
+        writer = self._prepared.writer
+        for event in [] if writer.backlog else writer.withdraw_in_step():
+            self._interpreter.messages.note(f"{event.word} does nothing: no move follows", event.line)
 
     @property
     def starved(self) -> bool:

@@ -56,7 +56,9 @@ class Prepared:
         self._tables = dialect.tables()
         if before is None:
             self.writer = QueueWriter(kernel.seg, kernel.paths, kernel.limits, path)
-            self.records = BlockRecords(dialect, rules, self._tables, CHUNK_BLOCKS)
+            self.records = BlockRecords(
+                dialect, rules, self._tables, CHUNK_BLOCKS, laser=config.spindle.laser
+            )
         else:
             self.writer, self.records = before.writer, before.records
         if before is not None and keeps_modal:
@@ -74,7 +76,8 @@ class Prepared:
             machine=config,
             answers=options.answers,
         )
-        self._functions_are_plain = config.spindle.laser or not options.answers
+        remapped = any(code[0] in "SM" for code in config.programs.remaps)
+        self._functions_are_plain = (config.spindle.laser or not options.answers) and not remapped
         self.writer.stands_at_stops = options.stands_at_stops
         self.writer.answers = options.answers
         self.writer.marks = deque() if options.marks else None

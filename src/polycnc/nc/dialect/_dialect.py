@@ -21,7 +21,7 @@ from pydantic import AfterValidator, Field, model_validator
 from polycnc.errors import UsageError, did_you_mean
 from polycnc.machine import PathConfig, StrictModel, load_toml, parse_toml, problem, validate
 from polycnc.nc.dialect._cycle_settings import Cycles, CycleSettings
-from polycnc.nc.modal._actions import M_ACTIONS, M_SENSES, NO_SENSE, Action, Family, Group, MAction, of_family
+from polycnc.nc.modal._actions import M_ACTIONS, NO_SENSE, Action, Family, Group, MAction, of_family, sense_of
 from polycnc.nc.modal._modal import (
     ABSOLUTE,
     ARC_RELATIVE,
@@ -62,6 +62,7 @@ Refused: TypeAlias = Literal[
     "D alone",
     "half a centre",
     "compensation outside X Y and X Z",
+    "feeds of before",
 ]
 _ACTIONS = {action.title: action for action in Action}
 
@@ -294,6 +295,10 @@ class Dialect(StrictModel):
         default=False,
         description="After G40 the next straight move leads out, also one that does not move in the plane.",
     )
+    inverse_time_as_programmed: bool = Field(
+        default=False,
+        description="With radius compensation G93 counts the programmed way, not that of the tool.",
+    )
     merges_lines: bool = Field(
         default=False,
         description="G64 P merges lines into one while every point between lies within Q of it, within P without Q.",
@@ -417,12 +422,14 @@ class Dialect(StrictModel):
         """Return what the compiled kernel needs of the dialect."""
         g_action = np.zeros(G_CODES, np.int16)
         for tenths, action in self._by_code.items():
-            if not (self.notes_codes and action is Action.FEED_PER_MINUTE):  # only ordinary blocks are noted
+            # Only ordinary blocks are noted, and forget the feed.
+            ordinary = self.notes_codes or "feeds of before" in self.refuses
+            if not (ordinary and action is Action.FEED_PER_MINUTE):
                 g_action[tenths] = action
         m_sense = np.full(_LOW_M, NO_SENSE, np.int8)
         for code, m_action in self._by_m.items():
             if code < _LOW_M:
-                m_sense[code] = M_SENSES.get(m_action, NO_SENSE)
+                m_sense[code] = sense_of(m_action, self.m_words.get(str(code), ""))
         return DialectTables(g_action, self.increment, m_sense, self.tool_word == "select")
 
     def set_initial_state(self, modal: Modal) -> None:
@@ -443,8 +450,8 @@ class Dialect(StrictModel):
 class DialectTables(NamedTuple):
     """The dialect as the compiled kernel reads it: actions by tenths of the G code, increment of numbers.
 
-    `m_sense` says of each M code what it switches (`M_SENSES`), or NO_SENSE; with `selects` T is for the next tool
-    change and nothing else.
+    `m_sense` says of each M code what it does (`M_SENSES`, `OUTPUT_SENSES`), or NO_SENSE; with `selects` T is for the
+    next tool change and nothing else.
     """
 
     g_action: npt.NDArray[np.int16]

@@ -33,8 +33,16 @@ from polycnc.kernel import (
 from polycnc.machine import LONGEST_BLOCK_S
 from polycnc.nc.blocks._arcs import ARC_OK, arc_by_center, arc_by_radius
 from polycnc.nc.dialect._dialect import DialectTables
-from polycnc.nc.fast._carried import CARRIED_WORDS, FUNCTIONS, changes_power, lasts, sense_of, take_note
-from polycnc.nc.fast._put_events import put_events
+from polycnc.nc.fast._carried import (
+    CARRIED_WORDS,
+    FUNCTIONS,
+    OUTPUT_WORDS,
+    changes_power,
+    lasts,
+    sense_of,
+    take_note,
+)
+from polycnc.nc.fast._put_events import fits, put_events
 from polycnc.nc.fast._work import (
     AXES,
     CENTERS,
@@ -45,6 +53,7 @@ from polycnc.nc.fast._work import (
     LETTERS,
     MARKED,
     NUMBER,
+    OUTPUT,
     RADIUS,
     SAYS_ABSOLUTE,
     SAYS_MOTION,
@@ -171,6 +180,8 @@ def _run(
             whole,
             work,
         ):
+            return block, NOT_PLAIN
+        if said[SEEN] & (FUNCTIONS | OUTPUT_WORDS) and not fits(paths, g, work):
             return block, NOT_PLAIN
         seen = said[SEEN]
         motion = said[SAYS_MOTION]
@@ -326,6 +337,8 @@ def _is_plain(letter: int, value: float, point: int, least_input: float, work: F
             work.said[SAYS_SENSE] = sense_of(value, work.m_sense)
         # Records read these words again from the text: their numbers have to stand there.
         return point != OPEN_VALUE and lasts(letter, value, work.said[SAYS_SENSE], work.carried)
+    if role == OUTPUT:
+        return point != OPEN_VALUE
     return bool(role == NUMBER or (role == LENGTH and (least_input <= 0.0 or point != 0)))
 
 

@@ -20,6 +20,7 @@ from polycnc.nc.fast._carried import (
     TOP_SPEED,
     Carried,
 )
+from polycnc.nc.modal._actions import OUTPUT_BIT, OUTPUT_VALUE
 from polycnc.nc.modal._modal import NO_AXIS, Floats, Ints, Modal, has_diameters
 
 # What a letter is, besides G.
@@ -27,6 +28,7 @@ UNKNOWN = 0
 NUMBER = 1
 LENGTH = 2
 LASTING = 3
+OUTPUT = 4
 
 # Columns of `said`: what a block says, and the letters of each sort as bits.
 SAYS_MOTION, SAYS_ABSOLUTE, SEEN, AXES, CENTERS, RADIUS, MARKED, SAYS_SENSE, EVENTS, FIRST_EVENT = range(10)
@@ -34,7 +36,9 @@ _SAID_COLUMNS = 10
 
 LETTERS = 26
 LETTER_A = ord("A")
-_D, _F, _H, _I, _J, _K, _M, _N, _R, _S, _T = (ord(letter) - LETTER_A for letter in "DFHIJKMNRST")
+_D, _E, _F, _H, _I, _J, _K, _M, _N, _P, _Q, _R, _S, _T = (
+    ord(letter) - LETTER_A for letter in "DEFHIJKMNPQRST"
+)
 
 
 class FastWork(NamedTuple):
@@ -47,7 +51,7 @@ class FastWork(NamedTuple):
     target: Floats  # [n]
     marks: Ints  # [blocks, 2] of blocks with words and without motion: segment count before which they stand, tag
     carried: Floats
-    events: Floats  # [most, 2] of the present call: S and M, NONE for none
+    events: Floats  # [most, 3] of the present call: see `EventRun`
     event_tags: Ints  # [most]
     arc: Floats  # [3] centre and sweep of the arc of the present block
     m_sense: npt.NDArray[np.int8]  # of each M code, see `DialectTables`
@@ -83,6 +87,8 @@ def make_fast_work(
     role[[_D, _H]] = LASTING
     if tables.selects:
         role[_T] = LASTING
+    if np.isin(tables.m_sense, (OUTPUT_BIT, OUTPUT_VALUE)).any():
+        role[[_P, _E, _Q]] = OUTPUT
     carried = np.full(CARRIED_COLUMNS, NONE)
     spindle, times = machine.spindle, machine.times
     carried[TOP_SPEED] = spindle.max_rpm
@@ -92,6 +98,8 @@ def make_fast_work(
         role[_F] = LENGTH
     if not has_diameters(modal):  # else centres and radii are scaled otherwise than positions
         role[[_I, _J, _K, _R]] = LENGTH
+    for code in machine.programs.remaps:
+        role[ord(code[0]) - LETTER_A] = UNKNOWN
     axis_letter = np.full(len(modal.position), NO_AXIS, np.int8)
     said = np.zeros(_SAID_COLUMNS, np.int64)
     said[CENTERS] = 1 << _I | 1 << _J | 1 << _K
@@ -111,7 +119,7 @@ def make_fast_work(
         target,
         np.zeros((blocks if marks else 0, 2), np.int64),
         carried,
-        np.zeros((2 * blocks, 2)),
+        np.zeros((2 * blocks, 3)),
         np.zeros(2 * blocks, np.int64),
         np.zeros(3),
         tables.m_sense,
@@ -125,12 +133,12 @@ def begin_run(work: FastWork, first_event: int, *, functions: bool) -> None:
 
 
 def events_made(work: FastWork) -> EventRun | None:
-    """Return the events of the last call, which are in the queue; None if there are none."""
+    """Return the events of the last call, None if there are none; the last ones may wait for a motion yet."""
     made = work.said[EVENTS]
     if not made:
         return None
     said = work.events[:made].T.copy()
-    return EventRun(said[0], said[1], work.event_tags[:made].copy())
+    return EventRun(said[0], said[1], said[2], work.event_tags[:made].copy())
 
 
 def marked(work: FastWork) -> list[tuple[int, int]]:

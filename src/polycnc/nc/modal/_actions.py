@@ -45,6 +45,7 @@ class Family(StrEnum):
     TURNING = "turning"
     TURNING_CYCLE = "turning cycle"
     CONTOUR_CYCLE = "contour cycle"
+    PROFILE = "profile"
     FRAME = "frame"
     PLACING = "placing"
     PATH = "path"
@@ -210,6 +211,9 @@ class Action(IntEnum):
     PROBE_IN_PASSING = Family.PATH, "axes", "Measure one axis in passing"
     PROBE_FIXED_STOP = Family.PATH, "axes", "Straight at feed up to a fixed stop"
     LEFT_OUT = Group.IGNORED, "", "As if it were not there"
+    PROFILE_FINISH = Family.PROFILE, "X Z Q D E P", "Finish the profile of sub-program Q"
+    PROFILE_ROUGH = Family.PROFILE, "X Z Q D I R U W", "Rough the profile of sub-program Q along Z"
+    PROFILE_FACE = Family.PROFILE, "X Z Q D I R U W", "The same along X"
     # fmt: on
 
     @property
@@ -266,7 +270,9 @@ class MAction(Enum):
 SPINDLE_SENSES = {MAction.SPINDLE_CW: 1, MAction.SPINDLE_CCW: -1, MAction.SPINDLE_STOP: 0}
 """Which way M codes let the spindle turn, 1 clockwise."""
 
-NO_SENSE, COOLANT_ON, COOLANT_OFF = 2, 3, 4
+NO_SENSE, COOLANT_ON, COOLANT_OFF, OUTPUT_BIT, OUTPUT_VALUE = 2, 3, 4, 5, 6
+OUTPUT_SENSES = {"P!": OUTPUT_BIT, "E!Q!": OUTPUT_VALUE}
+"""What an output in step with motion is by the words that it takes: P a bit, E with the value Q."""
 M_SENSES = {
     **SPINDLE_SENSES,
     MAction.COOLANT_MIST: COOLANT_ON,
@@ -274,6 +280,13 @@ M_SENSES = {
     MAction.COOLANT_OFF: COOLANT_OFF,
 }
 """What M codes do that blocks of a compiled run may say: turn the spindle or switch coolant; others are NO_SENSE."""
+
+
+def sense_of(action: MAction, takes: str) -> int:
+    """Return what an M code does that takes these words, see `M_SENSES` and `OUTPUT_SENSES`."""
+    if action is MAction.OUTPUT_IN_STEP:
+        return OUTPUT_SENSES.get(takes, NO_SENSE)
+    return M_SENSES.get(action, NO_SENSE)
 
 
 def coolant_with(coolant: tuple[int, ...], code: int, sense: int) -> tuple[int, ...]:

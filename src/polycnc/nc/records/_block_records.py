@@ -151,8 +151,11 @@ def line_of(tag: int) -> int:
 class BlockRecords:
     """Give out block references for the segments of one channel, and read them back."""
 
-    def __init__(self, dialect: Dialect, rules: ScanRules, tables: DialectTables, columns: int) -> None:
+    def __init__(
+        self, dialect: Dialect, rules: ScanRules, tables: DialectTables, columns: int, *, laser: bool
+    ) -> None:
         self._tables = tables
+        self._laser = laser
         self._rules = rules
         self._columns = columns  # blocks of one run of plain blocks at the most
         self._contexts: dict[int, _Context] = {}
@@ -411,7 +414,7 @@ class BlockRecords:
         columns = word_columns(self._columns)
         rules = self._rules if begin.feeds is None else self._rules._replace(open_words=True)
         scan(text.data, begin.offset, begin.line, rules, columns)
-        return replay_of(columns, self._tables, text, begin.feeds)
+        return replay_of(columns, self._tables, text, begin.feeds, laser=self._laser)
 
 
 def _codes(dialect: Dialect) -> dict[Action, str]:

@@ -14,6 +14,7 @@ from polycnc.nc.modal._actions import (
     COOLANT_OFF,
     COOLANT_ON,
     NO_SENSE,
+    OUTPUT_VALUE,
     SPINDLE_SENSES,
     Action,
     coolant_with,
@@ -59,8 +60,13 @@ class Replay(NamedTuple):
     d: Said
 
 
-def replay_of(columns: WordColumns, tables: DialectTables, text: ProgramText, feeds: Feeds | None) -> Replay:
-    """Return what the words in `columns`, a piece of `text`, say; `feeds` are the numbers of F words without one."""
+def replay_of(
+    columns: WordColumns, tables: DialectTables, text: ProgramText, feeds: Feeds | None, *, laser: bool
+) -> Replay:
+    """Return what the words in `columns`, a piece of `text`, say; `feeds` are the numbers of F words without one.
+
+    The value of output 0 in step with motion is S where that is the power of a `laser`.
+    """
     words, blocks = columns.n_words, columns.n_blocks
     letter, value = columns.letter[:words], columns.value[:words]
     block = np.searchsorted(columns.first_word[: blocks + 1], np.arange(words), side="right") - 1
@@ -79,13 +85,17 @@ def replay_of(columns: WordColumns, tables: DialectTables, text: ProgramText, fe
     is_m = letter == _M
     senses = np.full(words, NO_SENSE)
     senses[is_m] = senses_of(value[is_m], tables.m_sense)
+    is_speed = letter == ord("S")
+    if laser:
+        powers = np.intersect1d(block[senses == OUTPUT_VALUE], block[(letter == ord("E")) & (value == 0.0)])
+        is_speed |= (letter == ord("Q")) & np.isin(block, powers)
     turns = np.isin(senses, list(SPINDLE_SENSES.values()))
     return Replay(
         lines=columns.line[:blocks].tolist(),
         motion=_said(block[is_g], actions, PLAIN_MOTIONS),
         absolute=_said(block[is_g], actions, _DISTANCES),
         feed=of(is_f),
-        speed=of(letter == ord("S")),
+        speed=of(is_speed),
         direction=(block[turns].tolist(), senses[turns].astype(float).tolist()),
         m=of(is_m),
         coolant=of(np.isin(senses, (COOLANT_ON, COOLANT_OFF))),

@@ -7,12 +7,13 @@ from the left. Source: LinuxCNC G-code manual, Overview, "Binary Operators" and 
 from __future__ import annotations
 
 import re
+from collections.abc import Iterable
 from dataclasses import dataclass, field
 
 from polycnc.language import Flaw
 from polycnc.nc.blocks._polar_words import POLAR_LETTERS
 
-_OPERATOR = re.compile(r"\*\*|[*/+-]|(?:mod|eq|ne|gt|ge|lt|le|and|or|xor)", re.IGNORECASE)
+_WORDS = ("mod", "eq", "ne", "gt", "ge", "lt", "le", "and", "or", "xor")
 _POWERS = {
     "**": 5, "*": 4, "/": 4, "mod": 4, "+": 3, "-": 3,
     "eq": 2, "ne": 2, "gt": 2, "ge": 2, "lt": 2, "le": 2, "and": 1, "or": 1, "xor": 1,
@@ -34,14 +35,36 @@ _FUNCTIONS = (
     "sqrt",
     "tan",
 )
-_FUNCTION = re.compile("|".join(_FUNCTIONS), re.IGNORECASE)
+_KEYWORDS = (
+    *(
+        "endsub",
+        "sub",
+        "call",
+        "return",
+        "elseif",
+        "else",
+        "endif",
+        "if",
+        "endwhile",
+        "while",
+        "do",
+        "endrepeat",
+    ),
+    *("repeat", "break", "continue"),
+)
+
+
+def _any_of(words: Iterable[str], *others: str) -> re.Pattern[str]:
+    """Return what matches one of some words, in whose midst blanks count for nothing."""
+    return re.compile("|".join((*others, *(r"[ \t]*".join(word) for word in words))), re.IGNORECASE)
+
+
+_OPERATOR = _any_of(_WORDS, r"\*\*", "[*/+-]")
+_FUNCTION = _any_of(_FUNCTIONS)
+_O_WORD = _any_of(_KEYWORDS)
 _NUMBER = re.compile(r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)")
 _NAME = re.compile(r"<([^>]*)>")
 _BLANKS = re.compile(r"[ \t]*")
-_O_WORD = re.compile(
-    r"endsub|sub|call|return|elseif|else|endif|if|endwhile|while|do|endrepeat|repeat|break|continue",
-    re.IGNORECASE,
-)
 _LOCALS = 30
 _COMMON = 5000
 _NESTING = 30
@@ -81,6 +104,10 @@ class Line:
     o_word: OWord | None = None
     comments: list[str] = field(default_factory=list)
     skip: int = 0
+
+
+def _bare(word: str) -> str:
+    return "".join(word.split()).lower()
 
 
 def parameter_name(text: str) -> str:
@@ -177,10 +204,10 @@ class LineReader:
         while True:
             self._next()
             found = _OPERATOR.match(self._text, self._at)
-            if found is None or (power := _POWERS[found[0].lower()]) <= least:
+            if found is None or (power := _POWERS[_bare(found[0])]) <= least:
                 return left
             self._at = found.end()
-            left = _applied(found[0].lower(), left, self._chain(power))
+            left = _applied(_bare(found[0]), left, self._chain(power))
 
     def _function(self) -> Expression:
         found = _FUNCTION.match(self._text, self._at)
@@ -191,13 +218,16 @@ class LineReader:
                 f"Functions are {', '.join(_FUNCTIONS).upper()}.",
             )
         self._at = found.end()
-        name = found[0].lower()
+        name = _bare(found[0])
         if name == "exists":
             self._expect("[")
             self._expect("#")
+            self._next()
             named = _NAME.match(self._text, self._at)
             if named is None:
-                raise Flaw(self._at, "EXISTS without a name", "Write it like EXISTS[#<depth>].")
+                number = self.value().python
+                self._expect("]")
+                return Expression(f"exists_number({number})")
             self._at = named.end()
             self._expect("]")
             return Expression(f"exists({parameter_name(named[1])!r}, N)")
@@ -264,7 +294,7 @@ class LineReader:
                 "Add SUB, CALL, IF, WHILE, DO, REPEAT or what ends them.",
             )
         self._at = keyword.end()
-        word = OWord(keyword[0].lower(), label, computed, at)
+        word = OWord(_bare(keyword[0]), label, computed, at)
         if word.keyword in ("call", "return", "endsub", "if", "elseif", "while", "repeat"):
             while self._next() == "[":
                 word.arguments.append(self._bracket())

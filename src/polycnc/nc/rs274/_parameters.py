@@ -165,6 +165,11 @@ class Parameters:
         known = name in frame or name in self.names or name in KNOWN_NAMES
         return 1.0 if known or self._of_machine(name) is not None else 0.0
 
+    @staticmethod
+    def exists_number(number: float) -> float:
+        """Tell whether there is a parameter of a number."""
+        return float(0.5 <= number < _LAST - 0.5)
+
     def _of_machine(self, name: str) -> float | None:
         """Return what the machine has under a name like `_ini[section]name` or `_hal[pin]`, None if nothing."""
         if self._machine is None or (found := _OF_MACHINE.fullmatch(name)) is None:

@@ -16,6 +16,8 @@ from polycnc.nc.rs274._kept_modes import KEEPING
 from polycnc.nc.rs274._line import Expression, Line, LineReader, OWord
 from polycnc.nc.rs274._structure import (
     CALLS,
+    HAS_PROFILES,
+    PROFILES,
     RETURNS,
     TEXTS,
     WAITS,
@@ -24,7 +26,9 @@ from polycnc.nc.rs274._structure import (
     Row,
     Span,
     Structure,
+    read_row,
     rows_of,
+    rows_within,
 )
 from polycnc.nc.text._program import ProgramText
 from polycnc.nc.text._silent import is_silent
@@ -50,6 +54,11 @@ class Program:
 def numbered_label(number: str) -> str:
     """Return the name of the sub-program of M98 that begins at an O number."""
     return f"M98 {number}"
+
+
+def profile_label(label: str) -> str:
+    """Return the name of a sub-program that is read as a profile."""
+    return f"profile {label}"
 
 
 def translate(text: ProgramText, offset: int) -> Program:
@@ -79,6 +88,7 @@ class _Writer:
         self._changes = 0  # lines so far that change something
         self._crossed: set[int] = set()
         self._in_sub = False
+        self._is_profile = False  # lines of plain words are written out, too
 
     def write(self, items: list[Item], subs: dict[str, Block], numbered: dict[str, list[Item]]) -> Program:
         functions = {"": self._function("", items, None)}
@@ -87,6 +97,10 @@ class _Writer:
         self._in_sub = True
         for label, block in subs.items():
             functions[label] = self._function(label, block.bodies[0][2], block)
+        if HAS_PROFILES.search(self._text.content):
+            self._is_profile = True
+            for label, block in subs.items():
+                functions[profile_label(label)] = self._function(label, block.bodies[0][2], block)
         plain = not subs and all(isinstance(item, Span) for item in items)
         return Program(self._text, self._offset, functions, plain)
 
@@ -106,7 +120,10 @@ class _Writer:
 
     def _items(self, items: list[Item]) -> None:
         for item in items:
-            if isinstance(item, Span):
+            if isinstance(item, Span) and self._is_profile:
+                for row in rows_within(self._text, item):
+                    self._line(row, read_row(row))
+            elif isinstance(item, Span):
                 text = self._text.content[item.begin.offset : item.end]
                 self._changes += not is_silent(text.decode("latin-1"))
                 self._at(item.begin)
@@ -144,7 +161,12 @@ class _Writer:
         self._settings(line, words)
         if words:
             given = "w" if line.settings else f"({words},)"
-            put(f"yield block({row.number}, {row.offset}, {given}, {self._message(line)})")
+            profile = ""
+            if any(letter == "G" and code.python in PROFILES for letter, code, _ in line.words):
+                if not line.settings:
+                    put(f"w = ({words},)")
+                given, profile = "w", ", profile(w)"
+            put(f"yield block({row.number}, {row.offset}, {given}, {self._message(line)}{profile})")
         for _, code, at in keeping:
             put(f"yield modes({KEEPING[code.python]}, {row.number}, {row.offset + at})")
         if line.o_word is not None:

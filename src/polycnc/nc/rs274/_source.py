@@ -16,6 +16,7 @@ from polycnc.nc.rs274 import _inputs as inputs
 from polycnc.nc.rs274._functions import FUNCTIONS, NumberError
 from polycnc.nc.rs274._kept_modes import Words, modes_of, words_back
 from polycnc.nc.rs274._parameters import LAST_LOCAL, Parameters
+from polycnc.nc.rs274._profile import profile_of
 from polycnc.nc.rs274._program import Program, numbered_label
 from polycnc.nc.rs274._saved import SavedLevel, SavedProgram
 from polycnc.nc.sources._block_source import (
@@ -27,7 +28,7 @@ from polycnc.nc.sources._block_source import (
     WordsBlock,
 )
 from polycnc.nc.text._program import ProgramText
-from polycnc.nc.text._scan_plain import Word
+from polycnc.nc.text._scan_plain import Block, Word
 
 MOST_LEVELS = 10
 """How deep calls may be nested. Source: LinuxCNC `interp_internal.hh`, INTERP_SUB_ROUTINE_LEVELS."""
@@ -39,6 +40,7 @@ _PROBLEMS = (NumberError, KeyError, OverflowError, ValueError, UsageError)
 Suspended: TypeAlias = Generator[
     "SourceItem | CallRequest | ModesRequest | WaitRequest", None, "float | None"
 ]
+ValuedWords: TypeAlias = tuple[tuple[str, float, int], ...]
 Function: TypeAlias = Callable[[list[float], dict[str, float]], Suspended]
 
 
@@ -124,10 +126,14 @@ class RunningProgram:
             "name": owner.parameters.name,
             "named": owner.parameters.named,
             "exists": owner.parameters.exists,
+            "exists_number": owner.parameters.exists_number,
             "PAUSE": Pause.PAUSE,
             "skips": owner.skips,
             "span": self._span,
             "block": self._block,
+            "profile": lambda words: profile_of(
+                self._levels[-1].program.functions, self._function, owner.parameters.state, words
+            ),
             "says": self._says,
             "six": "{:f}".format,
             "times": lambda number: max(0, round(number)),
@@ -326,14 +332,17 @@ class RunningProgram:
         return TextSpan(offset, line, end, level.program.text, level.calls)
 
     def _block(
-        self, line: int, offset: int, words: tuple[tuple[str, float, int], ...], message: str
+        self,
+        line: int,
+        offset: int,
+        words: ValuedWords,
+        message: str,
+        profile: tuple[Block, ...] | None = None,
     ) -> WordsBlock:
-        for letter, value, _ in words:
-            if not abs(value) < _LARGEST:
-                raise NumberError(f"the number {value:g} of {letter} is too large")
-        made = tuple(Word(letter, value, place, True) for letter, value, place in words)
         level = self._levels[-1]
-        return WordsBlock(made, line, offset, message, text=level.program.text, calls=level.calls)
+        return WordsBlock(
+            _made(words), line, offset, message, text=level.program.text, calls=level.calls, profile=profile
+        )
 
     def _says(self, line: int, offset: int, text: str) -> WordsBlock:
         level = self._levels[-1]
@@ -403,6 +412,13 @@ class RunningProgram:
             case UsageError():
                 return ProgramError(error.what, position=position, hint=error.hint)
         return ProgramError("the number is too large", position=position, hint="Look at the expression.")
+
+
+def _made(words: ValuedWords) -> tuple[Word, ...]:
+    for letter, value, _ in words:
+        if not abs(value) < _LARGEST:
+            raise NumberError(f"the number {value:g} of {letter} is too large")
+    return tuple(Word(letter, value, place, True) for letter, value, place in words)
 
 
 def _whole(**words: float) -> int:

@@ -15,7 +15,7 @@ from polycnc.units import whole
 
 _TEXT_WITH_VALUES = re.compile(rb"\([ \t]*(?i:debug|print)")
 _O = re.compile(rb"[Oo]")
-_OF_LANGUAGE = re.compile(rb"[Mm][ \t]*0*(?:66|7[0-3]|9[89])(?![0-9.])")
+_OF_LANGUAGE = re.compile(rb"[Mm][ \t]*0*(?:66|7[0-3]|9[89])(?![0-9.])|[Gg][ \t]*0*7[0-2](?![0-9])")
 _LONGEST_BEFORE_O = 256
 _BEFORE_O = re.compile(rb"[ \t/]*(?:[Nn][0-9. \t]+)?")
 _O_NUMBER = re.compile(rb"[Oo][ \t]*[0-9]+[ \t]*(?=[(;\r\n]|\Z)")
@@ -23,7 +23,7 @@ _O_NUMBER = re.compile(rb"[Oo][ \t]*[0-9]+[ \t]*(?=[(;\r\n]|\Z)")
 _O_WORD = re.compile(rb"[Oo][ \t]*[0-9<]")
 _IS_CODE = re.compile(
     r"[#\[@^]|^[ \t/]*(?:[Nn][0-9.]+[ \t]*)?[Oo][ \t]*(?![0-9]+[ \t]*(?:[(;\r\n]|$))[0-9<\[#]"
-    r"|M[ \t]*0*(?:66|7[0-3]|9[89])(?![0-9.])"
+    r"|M[ \t]*0*(?:66|7[0-3]|9[89])(?![0-9.])|G[ \t]*0*7[0-2](?![0-9])"
     r"|\([ \t]*(?:debug|print)[ \t]*,",
     re.IGNORECASE,
 )
@@ -34,6 +34,8 @@ _ENDS = {"if": "endif", "while": "endwhile", "repeat": "endrepeat", "sub": "ends
 _MOST_IN_COMMON = 1000
 CALLS, RETURNS = repr(98.0), repr(99.0)
 WAITS = repr(66.0)
+HAS_PROFILES = re.compile(rb"[Gg][ \t]*0*7[0-2](?![0-9])")
+PROFILES = {repr(code) for code in (70.0, 71.0, 71.1, 71.2, 72.0, 72.1, 72.2)}
 """Codes by the Python of their numbers."""
 
 
@@ -115,6 +117,16 @@ def rows_of(text: ProgramText, offset: int) -> list[Row]:
     return rows
 
 
+def rows_within(text: ProgramText, span: Span) -> Iterator[Row]:
+    """Yield the lines of a span."""
+    row = span.begin
+    while row.offset < span.end:
+        yield row
+        after = row.end
+        content = text.content[after : text.line_end(after)].decode("latin-1")
+        row = Row(after, row.number + 1, content, text.next_line(after))
+
+
 class Structure:
     """Find what stands inside what."""
 
@@ -155,7 +167,7 @@ class Structure:
             if not _IS_CODE.search(row.text) or not _is_code(row.text):
                 _extend(inside, row)
                 continue
-            line = _read(row)
+            line = read_row(row)
             if line.o_word is None:
                 inside.append((row, line))
             else:
@@ -249,7 +261,12 @@ def _extend(inside: list[Item], row: Row) -> None:
         inside.append(Span(row, row.end))
 
 
-def _read(row: Row) -> Line:
+def read_row(row: Row) -> Line:
+    """Return what a line holds.
+
+    Raises:
+        Flaw: it is not as the language wants it.
+    """
     try:
         return LineReader(row.text, row.number).read()
     except Flaw as flaw:

@@ -39,7 +39,7 @@ from typing import Protocol, TypeAlias, TypeVar, runtime_checkable
 
 from polycnc.nc.records._block_records import Call
 from polycnc.nc.text._program import ProgramText
-from polycnc.nc.text._scan_plain import Word
+from polycnc.nc.text._scan_plain import Block, Word
 
 HostT = TypeVar("HostT", contravariant=True)
 """What a language asks of the channel that it works for, as a protocol of its own."""
@@ -50,7 +50,8 @@ class WordsBlock:
     """An NC block of line `line`; `offset` is where the line begins, `message` an operator message beside it.
 
     The `place` of each word is a byte offset in the program text: that is where errors point. `skip_level` is that of
-    a skip mark. `text` is the program it stands in, the one that the source was made for if None.
+    a skip mark. `text` is the program it stands in, the one that the source was made for if None. `profile` are the
+    lines of the sub-program whose profile the block cuts.
     """
 
     words: tuple[Word, ...]
@@ -60,6 +61,7 @@ class WordsBlock:
     skip_level: int = 0
     text: ProgramText | None = None
     calls: tuple[Call, ...] = ()
+    profile: tuple[Block, ...] | None = None
 
 
 @dataclass(frozen=True, slots=True)

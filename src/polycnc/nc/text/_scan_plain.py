@@ -59,7 +59,8 @@ class Block:
     """Hold one block: its words, or, flagged STATEMENT, its raw line in `statement` and no words.
 
     `offset` is where its line begins, `end` where the next line does. `message` is the text of the last
-    (MSG, text), `comments` are the texts of all other comments.
+    (MSG, text), `comments` are the texts of all other comments, `profile` the lines of the sub-program whose profile
+    the block cuts.
     """
 
     words: tuple[Word, ...]
@@ -71,6 +72,7 @@ class Block:
     statement: str = ""
     message: str = ""
     comments: tuple[str, ...] = ()
+    profile: tuple[Block, ...] | None = None
 
     @property
     def is_blank(self) -> bool:

@@ -144,6 +144,7 @@ class Facts:
     cycle_s: float | None = None
     tools: Mapping[int, Mapping[str, float | str]] = field(default_factory=dict)
     programs: Mapping[str, object] = field(default_factory=dict)
+    remaps: Mapping[str, str] = field(default_factory=dict)
     settings: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
 
 

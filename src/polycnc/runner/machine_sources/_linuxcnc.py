@@ -15,7 +15,7 @@ from polycnc.runner.machine_sources._facts import (
     others,
 )
 from polycnc.runner.machine_sources._ini import read_sections, sections_of
-from polycnc.runner.machine_sources._linuxcnc_files import numbers_of, programs_of, tools_of
+from polycnc.runner.machine_sources._linuxcnc_files import numbers_of, programs_of, remaps_of, tools_of
 from polycnc.units import MM_PER_INCH
 
 CONTROL = "a LinuxCNC configuration"
@@ -74,6 +74,7 @@ def read(text: str, file: str) -> Facts:
         tools=tools,
         programs=programs,
         settings=numbers_of(settings),
+        remaps=remaps_of(text, file),
     )
 
 

@@ -15,6 +15,9 @@ _WORD = re.compile(r"([A-Za-z])[ \t]*([-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+))")
 _NUMBER = re.compile(r"[-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][-+]?[0-9]{1,3})?")
 _TIPS = (0, 4, 3, 2, 1, 5, 8, 7, 6, 9)
 """The tip of a tool of the machine file by Q. Source: LinuxCNC user manual, "Lathe User Information"."""
+_SECTION = re.compile(r"\s*\[([^\]]+)\]")
+_REMAP = re.compile(r"REMAP\s*=\s*([A-Za-z](?:[0-9]+(?:\.[0-9])?)?)(?![^\s])")
+_DOES = re.compile(r"\b(?:ngc|python)\s*=\s*[\w.-]+")
 _FOLDERS = ("DISPLAY.PROGRAM_PREFIX", "RS274NGC.SUBROUTINE_PATH")
 _MOST_SETTINGS = 10_000
 
@@ -46,6 +49,19 @@ def programs_of(settings: Settings, *, inch: bool) -> tuple[dict[str, object], t
         else:
             left.append(LeftOut(f"RS274NGC.PARAMETER_FILE = {entry.text}", "there is no such file"))
     return programs, tuple(left)
+
+
+def remaps_of(text: str, file: str) -> dict[str, str]:
+    """Return the codes that the file defines anew, with where it says so and what it puts in their place."""
+    found: dict[str, str] = {}
+    section = ""
+    for number, line in enumerate(text.splitlines(), 1):
+        if match := _SECTION.match(line):
+            section = match[1]
+        elif section == "RS274NGC" and (match := _REMAP.match(line)):
+            what = f" ({does[0]})" if (does := _DOES.search(line)) else ""
+            found.setdefault(match[1].upper(), f"line {number} of {Path(file).name}{what}")
+    return found
 
 
 def numbers_of(settings: Settings) -> dict[str, dict[str, float]]:
@@ -84,7 +100,7 @@ def tools_of(settings: Settings, to_mm: float) -> tuple[dict[int, Tool], tuple[L
         if words:
             index, tool, others = _tool(words, text, to_mm, SourcePosition(str(path), number, 1, line))
             tools[index] = tool
-            left += [LeftOut(f"{letter} of tool {index}", "tools shift X and Z") for letter in others]
+            left += [LeftOut(f"{letter} of tool {index}", "tools shift X, Y and Z") for letter in others]
     return tools, tuple(left)
 
 
@@ -120,6 +136,7 @@ def _tool(
     for key, letter, scale in (
         ("length_mm", "Z", to_mm),
         ("x_mm", "X", to_mm),
+        ("y_mm", "Y", to_mm),
         ("radius_mm", "D", to_mm / 2.0),
     ):
         if value := words.get(letter, 0.0):
@@ -128,7 +145,7 @@ def _tool(
         tool["tip"] = tip
     if text:
         tool["description"] = text
-    return whole("T", 99_999), tool, (each for each in "YABCUVWIJ" if words.get(each, 0.0))
+    return whole("T", 99_999), tool, (each for each in "ABCUVWIJ" if words.get(each, 0.0))
 
 
 def _beside(folder: Path, name: str) -> Path | None:

@@ -65,6 +65,12 @@ def _programs(facts: Facts) -> Iterator[str]:
         yield "[programs]"
         for key, value in facts.programs.items():
             yield f"{key} = {json.dumps(value)}"
+    if facts.remaps:
+        yield ""
+        yield "[programs.remaps]"
+        yield from (
+            f"{json.dumps(code)} = {json.dumps(_one_line(where))}" for code, where in facts.remaps.items()
+        )
     if facts.settings:
         yield ""
         yield "[programs.settings]"

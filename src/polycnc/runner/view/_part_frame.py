@@ -76,7 +76,7 @@ def _extended(track: Track, machine: MachineConfig) -> Track:
 def hang_mm(tool: ToolConfig) -> tuple[float, float, float]:
     """Return where the tip of a tool is as seen from where it is held: X, Y, Z."""
     z_mm = tool.length_mm + tool.wear_length_mm + tool.z_mm + tool.wear_z_mm
-    return -(tool.x_mm + tool.wear_x_mm), 0.0, -z_mm
+    return -(tool.x_mm + tool.wear_x_mm), -tool.y_mm, -z_mm
 
 
 def _hangs_mm(machine: MachineConfig, tool: npt.NDArray[np.int64]) -> Floats:

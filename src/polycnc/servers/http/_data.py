@@ -47,6 +47,7 @@ class ToolAsked(BaseModel):
     z_mm: _Number = 0.0
     wear_x_mm: _Number = 0.0
     wear_z_mm: _Number = 0.0
+    y_mm: _Number = 0.0
 
 
 class OffsetAsked(BaseModel):
