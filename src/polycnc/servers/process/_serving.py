@@ -171,7 +171,7 @@ class Serving:
             keeper,
             made.find_control,
             made.own,
-            None,
+            made.programs,
             made.end,
             made.parameters,
             made.variables,
