@@ -6,12 +6,14 @@ import re
 
 from polycnc.units import whole
 
+_MARK = b"\xef\xbb\xbf"  # that editors put before UTF-8
 _NUMBER = re.compile(rb"\s*O(\d{1,4})\b")
 
 
 def unframed(content: bytes) -> bytes:
     """Return the text of a program as a control keeps it: without what frames it in a file."""
-    return content.replace(b"\r\n", b"\n").strip().removeprefix(b"%").lstrip().partition(b"\n%")[0] + b"\n"
+    text = content.removeprefix(_MARK).replace(b"\r\n", b"\n").strip().removeprefix(b"%").lstrip()
+    return (b"\n" + text).partition(b"\n%")[0].removeprefix(b"\n") + b"\n"
 
 
 def number_in(text: bytes) -> int | None:

@@ -7,6 +7,8 @@ from polycnc.controllers.fanuc import PowerMate
 from polycnc.servers.focas import number_in, unframed
 from polycnc.servers.machines import MemoryPrograms
 
+_UTF_16 = (b"\xff\xfe", b"\xfe\xff")
+
 
 class FanucPrograms(MemoryPrograms):
     """The program memory with its key, the parameters that protect numbers, and O words that are the names."""
@@ -20,8 +22,10 @@ class FanucPrograms(MemoryPrograms):
         self._check_protection(name)
         text = unframed(content)
         number = number_in(text)
-        if number is None:
-            text = f"{name}\n".encode("utf-8", "replace") + text.removeprefix(b"\n")
+        if content.startswith(_UTF_16):
+            text = content  # the memory refuses it
+        elif number is None:
+            text = f"{name}\n".encode() + text.removeprefix(b"\n")
         elif f"O{number:04d}" != name:
             raise ControlError(
                 Refusal.DATA,
@@ -53,4 +57,4 @@ class FanucPrograms(MemoryPrograms):
 
     @staticmethod
     def _number(name: str) -> int:
-        return number_in(name.encode("utf-8", "replace")) or 0
+        return number_in(name.encode()) or 0
