@@ -276,7 +276,7 @@ def test_thousands_of_half_begun_questions_stop_no_door() -> None:
 SILENT = {
     "http": b"GET /hea",
     "mtconnect": b"",
-    "shdr": b"",
+    "shdr": b"* PI",
     "grbl": b"",
     "focas": b"\xa0\xa0",
     "calls": b"PNC",

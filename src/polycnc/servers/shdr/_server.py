@@ -31,7 +31,7 @@ class ShdrServer:
         self._see = see(machine.find_control)
         self._address, self._port = address, port
         self._server: asyncio.Server | None = None
-        self._agents: dict[asyncio.StreamWriter, bool] = {}  # whether it has sent anything; the oldest first
+        self._agents: dict[asyncio.StreamWriter, bool] = {}  # whether it has sent a line; the oldest first
         self._turns: asyncio.Task[None] | None = None
 
     @property
@@ -109,7 +109,7 @@ class ShdrServer:
                 return
             self._machine.keeper.submit(lambda: self._begin(writer), lambda _: None)
             while data := await reader.read(_PIECE_BYTES):
-                if writer in self._agents:
+                if b"\n" in data and writer in self._agents:
                     self._agents[writer] = True
                 for _ in range(data.count(b"\n")):
                     if not await self._treated(writer):
@@ -123,7 +123,7 @@ class ShdrServer:
             writer.close()
 
     def _make_room(self) -> bool:
-        """End the oldest connection that has sent nothing; tell whether there is one."""
+        """End the oldest connection that has sent no line; tell whether there is one."""
         silent = next((writer for writer, has_sent in self._agents.items() if not has_sent), None)
         if silent is None:
             return False
