@@ -28,7 +28,7 @@ def served_machine(kind: str, machinery: Machinery) -> ServedMachine:
     served: ServedDevice[Any] = ServedDevice(made.device, made.find_control)
     keeper = Keeper(served, Still())
     machine = ServedMachine(
-        "m", kind, made.device, served, keeper, made.find_control, made.own, end=made.end,
+        "m", kind, made.device, served, keeper, made.find_control, made.own, made.programs, end=made.end,
         parameters=made.parameters, variables=made.variables, signals=made.signals,
         screen=made.screen, tasks=made.tasks,
     )  # fmt: skip

@@ -173,6 +173,20 @@ def test_settings_are_the_machine_s() -> None:
     assert bench.send("\x18$20=1\n?", 100)[-1].startswith("<Idle|MPos:3")
 
 
+def test_soft_limits_are_on_only_with_a_travel_and_travels_act_only_with_soft_limits() -> None:
+    bench = Bench()
+    bench.control = grbl_control("mill3")  # without travels
+    bench.core = GrblCore(bench.control)
+    assert bench.send("$22=1\n$20=1\n", 50)[-1] == "error:3"
+    assert "$20=0" in bench.send("$$\n")
+    assert bench.send("$130=80\n", 50) == ["ok"]
+    assert {"$20=0", "$130=80.000"} <= set(bench.send("$$\n"))
+    assert not bench.control.machine.config.axes[0].soft_limits[0] > -1e9
+    assert bench.send("$20=1\n", 50) == ["ok"]
+    assert {"$20=1", "$130=80.000"} <= set(bench.send("$$\n"))
+    assert bench.control.machine.config.axes[0].soft_limits == (-80.0, 0.0)
+
+
 def test_settings_and_startup_lines_last_and_go_back_to_defaults() -> None:
     bench = Bench()
     assert bench.send("$10=2\n$27=1.5\n$N0=G21\n") == ["ok"] * 3

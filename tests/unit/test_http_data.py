@@ -274,8 +274,25 @@ def test_a_status_is_answered_as_its_route_does_and_every_answer_is_counted() ->
         refused(await client.get("../x/status"), 404)
         refused(await client.post("/status"), 405)
         refused(await client.get("/status", headers={"host": "evil.example"}), 421)
+        assert (await client.get("/status", headers={"polycnc-key": "k" * 64})).content == quick.content
+        refused(await client.get("/status", headers={"polycnc-key": "k" * 65}), 422)
         figures = (await client.get("http://localhost/metrics")).text
         counted = dict(re.findall(r'^polycnc_http_requests_total\{status="(\d+)"\} (\S+)$', figures, re.M))
-        assert counted == {"200": "2.0", "404": "1.0", "405": "1.0", "421": "1.0"}
+        assert counted == {"200": "3.0", "404": "1.0", "405": "1.0", "421": "1.0", "422": "1.0"}
 
     visit("plain", PLAIN, ask)
+
+
+@pytest.mark.parametrize("kind", ["plain", "apci", "imc"])
+def test_a_status_is_as_it_is_described_with_a_control_and_without(kind: str) -> None:
+    jsonschema = pytest.importorskip("jsonschema", reason="pip install jsonschema")
+
+    async def ask(client: Any, machine: ServedMachine) -> None:
+        document = (await client.get("http://localhost/openapi.json")).json()
+        said = document["paths"]["/api/machines/{machine}/status"]["get"]["responses"]["200"]
+        schema = {**said["content"]["application/json"]["schema"], "components": document["components"]}
+        jsonschema.validate((await client.get("/status")).json(), schema)
+        with pytest.raises(jsonschema.ValidationError):
+            jsonschema.validate({"cycle": 1, "time_s": 0.0, "axes": 7}, schema)
+
+    visit(kind, PLAIN if kind == "plain" else Machinery("m"), ask)

@@ -107,3 +107,24 @@ def test_machines_whose_time_is_costly_leave_room_for_requests(asked: bool) -> N
         assert len(answers) == (4000 if asked else 0)
 
     asyncio.run(run())
+
+
+def test_a_clock_that_cannot_keep_up_tells_what_it_drops() -> None:
+    """Whose cycles cost twenty times what they last falls behind, half a second at most; what is dropped is told."""
+    lags: list[float] = []
+
+    async def run() -> None:
+        wall = Wall()
+        device = Slow(wall, cost_s=0.02)
+        keeper = Keeper(device, wall, on_late=lags.append)
+        for _ in range(150):
+            wall.time_s += 0.01
+            assert keeper.submit(lambda: None, lambda _: None)
+            behind_s = wall.time_s - 7.0 - device.clock.now_s - sum(lags)
+            assert behind_s < 0.5 + 0.04
+        assert device.clock.cycles == len(device.passed)  # a cycle for each of them, and no more
+        assert sum(lags) > 0.5 * (wall.time_s - 7.0)
+        keeper.close()
+
+    asyncio.run(run())
+    assert all(lag >= 0.5 for lag in lags)

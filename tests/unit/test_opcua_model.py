@@ -9,6 +9,7 @@ from collections.abc import Mapping
 from dataclasses import replace
 from itertools import pairwise
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import pytest
@@ -20,6 +21,7 @@ from asyncua.server.address_space import AttributeValue, NodeData
 
 from polycnc.cnc import Control, Mode, RunState
 from polycnc.errors import UsageError
+from polycnc.servers.machines import Log
 from polycnc.servers.opcua import CNC_TYPES, MACHINE_TOOL_TYPES, _bounds
 from polycnc.servers.opcua._cnc import CHANNEL as CNC_CHANNEL
 from polycnc.servers.opcua._identity import CERTIFICATE, KEY, Users, identity_of
@@ -30,7 +32,10 @@ from polycnc.servers.opcua._moment import At, Fixed
 from polycnc.servers.opcua._node_sets import IN_ORDER, find_node_sets
 from polycnc.servers.opcua._publish import _plain
 from polycnc.servers.opcua._standard import bounded_server
+from polycnc.servers.opcua._writes import Writes
 from polycnc.servers.plant import FACTS, see
+from polycnc.servers.process import Machinery
+from support.http_app import served_machine
 
 
 def at(**fields: Any) -> At:
@@ -188,6 +193,49 @@ def test_what_changes_is_notified_in_order_up_to_the_size_of_the_queue(size: int
 
     changes = [value for before, value in pairwise([9.0, *values]) if value != before]
     assert _run(visit()) == [9.0, *changes[-size:]]
+
+
+def test_a_feed_hold_is_good_only_where_a_program_is_held() -> None:
+    """The stop button of a Power Mate can be pressed at any time; what is written to `FeedHold` is so afterwards."""
+    member = next(each for each in CNC_CHANNEL.members if each.name == "FeedHold")
+    node, good = ua.NodeId("hold", 1), ua.StatusCode(ua.StatusCodes.Good)
+
+    async def run() -> list[tuple[int, str]]:
+        machine = served_machine("fanuc", Machinery("m"))
+        assert machine.find_control is not None
+        control, look = machine.find_control(), see(machine.find_control)
+        fixed, device = Fixed.of("m", control, {}), machine.device
+
+        async def refresh() -> None:
+            pass
+
+        publisher: Any = SimpleNamespace(
+            machine=machine, fixed=fixed, refresh=refresh, at=lambda *_: At(look(), fixed)
+        )
+        bound: Any = SimpleNamespace(member=member, node=node, item=SimpleNamespace(channel=0, about=""))
+        writes = Writes({node: None}, {}, Log())  # type: ignore[arg-type]
+        writes.add(publisher, bound)
+
+        async def write(on: bool, status: ua.StatusCode = good) -> tuple[int, str]:
+            value = ua.DataValue(ua.Variant(on, ua.VariantType.Boolean), status)
+            asked = ua.WriteValue(node, ua.AttributeIds.Value, None, value)
+            return await writes._one(asked), control.channel_status().run_state.value
+
+        found = [await write(True), await write(False)]
+        device.select_mode("MDI")  # type: ignore[attr-defined]
+        control.set_mdi("G4 X9.\n")
+        device.cycle_start()  # type: ignore[attr-defined]
+        machine.served.advance(10)
+        uncertain = ua.StatusCode(ua.StatusCodes.UncertainInitialValue)
+        found += [await write(True, uncertain), await write(True), await write(True), await write(False)]
+        machine.close()
+        return found
+
+    codes = ua.StatusCodes
+    assert asyncio.run(run()) == [
+        (codes.BadInvalidState, "ready"), (codes.Good, "ready"), (codes.BadWriteNotSupported, "active"),
+        (codes.Good, "hold"), (codes.Good, "hold"), (codes.Good, "active"),
+    ]  # fmt: skip
 
 
 def test_a_certificate_is_kept_and_used_again(tmp_path: Path) -> None:

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import asyncio
 import socket
+import struct
 from collections.abc import Awaitable, Callable
 from typing import Any, TypeVar
 
 import pytest
 
+from polycnc.servers.calls import LIBRARIES
 from polycnc.servers.focas import Frame, FrameType
 from polycnc.servers.machines import Wanted, tell_errors
 from polycnc.servers.process import DOORS, Machinery
@@ -269,6 +271,52 @@ def test_a_crowd_of_half_begun_questions_stops_no_door() -> None:
 def test_thousands_of_half_begun_questions_stop_no_door() -> None:
     for name in CROWDED:
         _visit_crowded(name, 4_000)
+
+
+SILENT = {
+    "http": b"GET /hea",
+    "mtconnect": b"",
+    "shdr": b"* PI",
+    "grbl": b"",
+    "focas": b"\xa0\xa0",
+    "calls": b"PNC",
+}
+"""What a client sends that says nothing whole."""
+
+
+@pytest.mark.parametrize("name", SILENT)
+def test_who_says_nothing_makes_room_for_who_asks(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """More silent connections than a door takes: whoever asks is answered, and who has asked before stays."""
+    for place, most in {"asgi._connection.MOST_CONNECTIONS": 4, "shdr._server._MOST_AGENTS": 4,
+                        "grbl._server._SILENT_S": 0.0, "focas._server.MOST_LINES": 4,
+                        "calls._server._MOST_CLIENTS": 4}.items():  # fmt: skip
+        monkeypatch.setattr(f"polycnc.servers.{place}", most)
+    kind, hello, begins = CROWDED[name]
+    if name == "calls":
+        table = LIBRARIES["fanuc"].load().table_hash
+        hello = b"PNCCALL1" + bytes([8, 0, 0, 0]) + struct.pack("<16s16s16s", b"fwlib32", b"7.5", table)
+
+    async def ask(port: int) -> tuple[asyncio.StreamReader, asyncio.StreamWriter]:
+        reader, writer = await asyncio.open_connection("127.0.0.1", port)
+        writer.write(hello)
+        said = await asyncio.wait_for(reader.read(1 << 14), 20)
+        assert said.lstrip().startswith(begins), said
+        return reader, writer
+
+    async def visit(port: int) -> None:
+        known = [] if name == "grbl" else [await ask(port)]  # one sender at a time
+        silent = [await asyncio.open_connection("127.0.0.1", port) for _ in range(9)]
+        for _, writer in silent:
+            writer.write(SILENT[name])
+        await asyncio.sleep(SHORT_S)
+        known.append(await ask(port))
+        for reader, writer in known:
+            assert not reader.at_eof()
+            writer.close()
+        for _, writer in silent:
+            writer.close()
+
+    with_door(name, kind, Machinery("m", "mill3" if kind == "plain" else None), visit)
 
 
 def test_a_system_without_files_is_told_once_in_a_word() -> None:

@@ -132,7 +132,7 @@ class ProgramCommands:
 
         Raises:
             ControlError: The emergency stop or an alarm is on, the mode has no programs, nothing is selected, axes
-                move or are not referenced, or a program is being executed.
+                move or are not referenced, a program is being executed, or an interrupted one is to begin at a line.
         """
         chosen = self._of.channel(channel)
         check_ready(self._of.emergency, self._of.alarms.of(channel))
@@ -150,6 +150,12 @@ class ProgramCommands:
                     Refusal.MODE,
                     f"the program that is interrupted was started in {Mode.MDI if chosen.is_mdi else Mode.AUTO}",
                     hint="Go on in that mode, or reset it.",
+                )
+            if line != 1:
+                raise ControlError(
+                    Refusal.RUNNING,
+                    f"a program is interrupted, it cannot begin at line {line}",
+                    hint="Reset it first, or let it go on without a line.",
                 )
             chosen.go_on(self._of.data.after_manual, step)
             self._of.messages.withdraw(PROGRAM_MESSAGE + chosen.path)

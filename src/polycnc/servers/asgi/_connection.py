@@ -50,16 +50,32 @@ class Connection(H11Protocol):
     treat: Treat
 
     def connection_made(self, transport: asyncio.Transport) -> None:  # type: ignore[override]
-        """Begin; beyond so many connections only a refusal is answered."""
+        """Begin; beyond so many connections the oldest that has never asked makes room, else a refusal is answered."""
         super().connection_made(transport)
         notice_loss(transport)
         self._since_s = self.loop.time()
         self._unread = 0
-        if len(self.connections) > MOST_CONNECTIONS:
+        self._has_asked = False
+        if len(self.connections) > MOST_CONNECTIONS and not self._make_room():
             self.app = self._crowded
         else:
             self._usual, self.app = self.app, self._treated
         self._looking = self.loop.call_later(_LOOK_S, self._look)
+
+    def _make_room(self) -> bool:
+        """End the oldest connection whose first question has not come; tell whether there is one."""
+        others = [each for each in self.connections if isinstance(each, Connection) and each.is_silent]
+        oldest = min(others, key=lambda each: each._since_s, default=self)
+        if oldest is self:
+            return False
+        self.connections.discard(oldest)
+        oldest.transport.abort()
+        return True
+
+    @property
+    def is_silent(self) -> bool:
+        """Whether its first question has not come, or not whole."""
+        return not self._has_asked and (self.cycle is None or self.cycle.more_body)
 
     def connection_lost(self, exc: Exception | None) -> None:
         """Forget it."""
@@ -102,6 +118,7 @@ class Connection(H11Protocol):
     def on_response_complete(self) -> None:
         """Wait for the next question."""
         self._since_s = self.loop.time()
+        self._has_asked = True
         super().on_response_complete()
 
     def handle_websocket_upgrade(self, event: h11.Request) -> None:

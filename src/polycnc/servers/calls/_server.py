@@ -35,7 +35,7 @@ class CallsServer:
         trace: Path | None = None,
     ) -> None:
         self.address, self.port = address, port
-        self.lines: set[_Line] = set()
+        self.lines: dict[_Line, None] = {}  # the oldest first
         kinds = dict.fromkeys(each.kind for each in machines)
         self._libraries = {LIBRARIES[kind].load().name: kind for kind in kinds}
         for kind in kinds:
@@ -102,6 +102,18 @@ class CallsServer:
             library.packed(packing) or library, [each.device for each in machines], None
         ), machines
 
+    def join(self, line: _Line) -> bool:
+        """Note a connection; where there are too many the oldest without a library makes room, else it is refused."""
+        if len(self.lines) >= _MOST_CLIENTS:
+            silent = next((each for each in self.lines if each.is_new), None)
+            if silent is None:
+                self.tell(f"more than {_MOST_CLIENTS} clients")
+                return False
+            del self.lines[silent]
+            silent.abort()
+        self.lines[line] = None
+        return True
+
     def tell(self, sentence: str) -> None:
         """Write what was refused into the log."""
         self._log.write("refused", door="calls", reason=sentence)
@@ -147,12 +159,15 @@ class _Line(asyncio.BufferedProtocol):
         self.transport = transport
         notice_loss(transport)
         self._linger = Linger(transport, self._buffer)
-        if len(self._server.lines) >= _MOST_CLIENTS:
-            self._server.tell(f"more than {_MOST_CLIENTS} clients")
+        if not self._server.join(self):
             transport.abort()
             return
-        self._server.lines.add(self)
         self._limit = asyncio.get_running_loop().call_later(_HELLO_S, self.abort)
+
+    @property
+    def is_new(self) -> bool:
+        """Whether it has not said which library it wants."""
+        return not self._machines
 
     def get_buffer(self, sizehint: int) -> memoryview:
         return self._buffer
@@ -223,7 +238,7 @@ class _Line(asyncio.BufferedProtocol):
             self.transport.resume_reading()
 
     def connection_lost(self, error: Exception | None) -> None:
-        self._server.lines.discard(self)
+        self._server.lines.pop(self, None)
         self._linger.close()
         if self._later is not None:
             self._later.cancel()

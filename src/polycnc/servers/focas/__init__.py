@@ -25,7 +25,7 @@ from polycnc.servers.focas._commands import COMMANDS, WRITING, known
 from polycnc.servers.focas._control import FocasControl
 from polycnc.servers.focas._dissect import Dissector, Field, dissect
 from polycnc.servers.focas._faults import Fault, FaultKind, Faults, Plan, load_faults
-from polycnc.servers.focas._numbered import numbered
+from polycnc.servers.focas._numbered import number_in, numbered, unframed
 from polycnc.servers.focas._profile import PROFILES, Profile, load_profile
 from polycnc.servers.focas._served import ServedControl
 from polycnc.servers.focas._server import PORT, FocasServer
@@ -74,12 +74,14 @@ __all__ = [
     "known",
     "load_faults",
     "load_profile",
+    "number_in",
     "numbered",
     "read_replies",
     "read_requests",
     "read_status",
     "status_body",
     "text",
+    "unframed",
     "write_replies",
     "write_requests",
 ]

@@ -54,7 +54,7 @@ class FocasServer:
         self.control = FocasControl(control, profile, faults, keep=keep)
         self.calls: CallsServer | None = None
         self._server: asyncio.Server | None = None
-        self._lines: set[_Line] = set()
+        self._lines: dict[_Line, None] = {}  # the oldest first
         self._watch: asyncio.TimerHandle | None = None
         self._task: asyncio.Task[None] | None = None  # keeps it from being collected
 
@@ -136,18 +136,20 @@ class FocasServer:
             await self.calls.close()
         await asyncio.sleep(0)  # lets the connections tell that they are lost
 
-    @property
-    def crowded(self) -> bool:
-        """Whether there are more connections than it takes."""
-        return len(self._lines) > MOST_LINES
-
-    def joined(self, line: _Line) -> None:
-        """Note a connection."""
-        self._lines.add(line)
+    def joined(self, line: _Line) -> bool:
+        """Note a connection; where there are too many the oldest that is not open makes room, else it is refused."""
+        if len(self._lines) >= MOST_LINES:
+            silent = next((each for each in self._lines if each.is_new), None)
+            if silent is None:
+                return False
+            self.left(silent)
+            silent.abort()
+        self._lines[line] = None
+        return True
 
     def left(self, line: _Line) -> None:
         """Forget a connection."""
-        self._lines.discard(line)
+        self._lines.pop(line, None)
 
 
 class _Line(asyncio.Protocol):
@@ -169,12 +171,16 @@ class _Line(asyncio.Protocol):
     def connection_made(self, transport: asyncio.BaseTransport) -> None:
         assert isinstance(transport, asyncio.Transport)
         self.transport = transport
-        self._server.joined(self)
         notice_loss(transport)
-        if self._server.crowded:
-            transport.abort()
-        else:
+        if self._server.joined(self):
             self._patience.begin(LEAST_PATIENCE_S)
+        else:
+            transport.abort()
+
+    @property
+    def is_new(self) -> bool:
+        """Whether it has not been opened yet."""
+        return self._session.state is State.NEW
 
     def data_received(self, data: bytes) -> None:
         session, calls = self._session, self._server.calls

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import math
 import os
 import re
 from collections.abc import Callable
@@ -20,6 +21,8 @@ _MOST_UNREAD = 1 << 20  # bytes that a client may leave unread
 _ENDS = (b"\n", b"?")
 _REQUESTS = re.compile(rb"[^\n?]*[\n?]|[^\n?]+")
 """Pieces that end with a line or a question."""
+_SILENT_S = 5.0
+"""How long a sender may send nothing at all before another one takes its place; senders ask for a status."""
 _OTHER = b"[MSG:Another sender is connected]\r\n"
 
 
@@ -73,6 +76,7 @@ class GrblServer:
         self._path = terminal
         self._server: asyncio.Server | None = None
         self._client: asyncio.StreamWriter | None = None
+        self._silent_since_s = math.inf  # of the client, which has sent something then
         self._terminal: _Terminal | None = None
         self._from_terminal = False
         self._turns: asyncio.Task[None] | None = None
@@ -132,14 +136,20 @@ class GrblServer:
 
     async def _serve(self, reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
         if self._client is not None:
-            writer.write(_OTHER)
-            writer.close()
-            return
+            if asyncio.get_running_loop().time() - self._silent_since_s < _SILENT_S:
+                writer.write(_OTHER)
+                writer.close()
+                return
+            self._client.transport.abort()
         self._client, self._from_terminal = writer, False
+        self._silent_since_s = asyncio.get_running_loop().time()
         notice_loss(writer.transport)
         self._owner.submit(self._core.greet, self._answer)
         try:
             while data := await reader.read(_PIECE_BYTES):
+                if self._client is not writer:
+                    return  # another one has taken its place
+                self._silent_since_s = math.inf
                 for piece in [data] if self._is_usual() else _REQUESTS.findall(data):
                     if piece[-1:] in _ENDS:
                         treatment = self._treat()
@@ -153,7 +163,8 @@ class GrblServer:
         except (OSError, asyncio.CancelledError):
             pass  # it has gone, or the door closes
         finally:
-            self._client = None
+            if self._client is writer:
+                self._client = None
             writer.close()
 
     def _of_terminal(self, data: bytes) -> None:

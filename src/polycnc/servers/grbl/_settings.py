@@ -121,9 +121,12 @@ class GrblSettings:
             axis = axes[number % 10]
             low, high = self._off.get(axis.name, (0.0, 0.0)) if read is _travel else (0.0, 0.0)
             return high - low or read(axis)
-        homing = any(axis.reference_switch is not None for axis in axes)
-        default = float(homing) if number == HOMING else BY_NUMBER[number].default
-        return self._kept.get(number, default)
+        return self._kept.get(number, self._default(number))
+
+    def _default(self, number: int) -> float:
+        if number == HOMING:
+            return float(any(each.reference_switch is not None for each in self._control.machine.config.axes))
+        return BY_NUMBER[number].default
 
     def flag(self, number: int) -> bool:
         """Return whether a setting is on."""
@@ -146,8 +149,11 @@ class GrblSettings:
             raise RefusedError(GrblError.NEGATIVE)
         if value > row.most or (number >= _RATE and value == 0.0):
             raise RefusedError(GrblError.NUMBER, f"${number} cannot be {value:g}")
-        if number == SOFT_LIMITS and value and not self.flag(HOMING):
-            raise RefusedError(GrblError.NEEDS_HOMING)
+        if number == SOFT_LIMITS and value:
+            if not self.flag(HOMING):
+                raise RefusedError(GrblError.NEEDS_HOMING)
+            if not self._off and not self.flag(SOFT_LIMITS):
+                raise RefusedError(GrblError.STATEMENT, "no axis has a travel: write $130 to $132 first")
         if number in _OF_THE_FILE and value != self[number]:
             raise RefusedError(GrblError.STATEMENT, f"{_OF_THE_FILE[number]} in the machine file")
 
@@ -159,9 +165,10 @@ class GrblSettings:
         """
         value = float(int(value)) if BY_NUMBER[number].whole else value
         if self.changes_axes(number):
-            axes = self._control.machine.config.axes
-            changed = [self._changed(axis, index, number, value) for index, axis in enumerate(axes)]
+            axes, off = self._control.machine.config.axes, dict(self._off)
+            changed = [self._changed(axis, index, number, value, off) for index, axis in enumerate(axes)]
             self._control.change_axes(tuple(changed))
+            self._off = off
         elif number not in _OF_THE_FILE:
             self._area[number] = value
             self._kept[number] = value
@@ -171,17 +178,20 @@ class GrblSettings:
     def restore_defaults(self) -> None:
         """Forget what was written of settings that are not the axes'."""
         for number in list(self._kept):
-            self.write(number, BY_NUMBER[number].default)
+            self.write(number, self._default(number))
 
-    def _changed(self, axis: AnyAxis, index: int, number: int, value: float) -> AnyAxis:
+    def _changed(
+        self, axis: AnyAxis, index: int, number: int, value: float, off: dict[str, tuple[float, float]]
+    ) -> AnyAxis:
+        """Return an axis with a setting; limits that do not act are kept in `off`."""
         update: dict[str, Any] = {}
+        limits = axis.soft_limits
         unit = "mm" if axis.kind == "linear" else "deg"
         if number == SOFT_LIMITS and index < AXES:
-            limits = axis.soft_limits
-            if value and axis.name in self._off:
-                update = {f"soft_limits_{unit}": self._off.pop(axis.name)}
+            if value and axis.name in off:
+                update = {f"soft_limits_{unit}": off.pop(axis.name)}
             elif not value and _travel(axis) > 0.0:
-                self._off[axis.name] = limits
+                off[axis.name] = limits
                 update = {f"soft_limits_{unit}": None}
         elif number % 10 == index and number >= _RATE:
             match number // 10 * 10:
@@ -189,9 +199,10 @@ class GrblSettings:
                     update = {f"vmax_{unit}_s": value / 60.0}
                 case 120:
                     update = {f"amax_{unit}_s2": value}
-                case _ if axis.name in self._off:
-                    self._off[axis.name] = (self._off[axis.name][1] - value, self._off[axis.name][1])
                 case _:
-                    high = axis.soft_limits[1] if _travel(axis) > 0.0 else 0.0
-                    update = {f"soft_limits_{unit}": (high - value, high)}
+                    _, high = off.get(axis.name, limits if _travel(axis) > 0.0 else (0.0, 0.0))
+                    if self.flag(SOFT_LIMITS):
+                        update = {f"soft_limits_{unit}": (high - value, high)}
+                    else:
+                        off[axis.name] = (high - value, high)
         return axis.model_copy(update=update) if update else axis

@@ -47,9 +47,22 @@ def inventory_parts(machine: ServedMachine, known: dict[str, int]) -> dict[str, 
     return {name: whole[name] for name in ("revisions", *changed)}
 
 
+_DEVICE_STATUS: dict[str, Any] = {
+    "title": "DeviceStatus",
+    "description": "What a device without a control shows; more is there by its kind.",
+    "type": "object",
+    "required": ["cycle", "time_s", "axes"],
+    "properties": {
+        "cycle": {"type": "integer"},
+        "time_s": {"type": "number"},
+        "axes": {"type": "array", "items": {"type": "object"}},
+    },
+}
+
+
 def schemas() -> dict[str, Any]:
-    """Return JSON schemas by name: the status and the inventory of a control, and what they are made of."""
-    found: dict[str, Any] = {}
+    """Return JSON schemas by name: statuses, the inventory of a control, and what they are made of."""
+    found: dict[str, Any] = {"DeviceStatus": _DEVICE_STATUS}
     for kind in (Status, Inventory):
         made = TypeAdapter(kind).json_schema(
             mode="serialization", ref_template="#/components/schemas/{model}"

@@ -20,6 +20,8 @@ REFUSALS: dict[int | str, dict[str, Any]] = {
 }
 """What may be answered besides, for any question."""
 PROBLEM_SCHEMA = Problem.model_json_schema()
+STATUS = {"anyOf": [{"$ref": f"#/components/schemas/{name}"} for name in ("Status", "DeviceStatus")]}
+"""A status is that of a control, or of a device without one."""
 
 
 class Found:

@@ -14,7 +14,7 @@ from polycnc.servers.http._body import json_object
 from polycnc.servers.http._clock import ClockRoutes
 from polycnc.servers.http._data import DataRoutes
 from polycnc.servers.http._documents import as_json, status_json
-from polycnc.servers.http._found import JSON, ONE, REFUSALS, Found, answer, body
+from polycnc.servers.http._found import JSON, ONE, REFUSALS, STATUS, Found, answer, body
 from polycnc.servers.http._lease import KeyShown, LeaseRoutes, Leases, is_for_all
 from polycnc.servers.http._path import PathRoutes
 from polycnc.servers.http._screens import ScreenRoutes
@@ -65,7 +65,7 @@ class Api:
         get = router.get
         get("", summary="The machines.")(self.machines)
         get(f"{ONE}/status", summary="All that a machine shows at its present cycle.", response_class=Response,
-            responses=answer({"$ref": "#/components/schemas/Status"}))(self.status)  # fmt: skip
+            responses=answer(STATUS))(self.status)  # fmt: skip
         get(f"{ONE}/inventory", summary="What changes seldom, with a revision for each part.",
             response_class=Response,
             responses=answer({"$ref": "#/components/schemas/Inventory"}))(self.inventory)  # fmt: skip

@@ -11,7 +11,7 @@ from polycnc.cnc import ControlError, Refusal
 from polycnc.machine import Snapshot
 from polycnc.servers.http._body import checked, json_object
 from polycnc.servers.http._documents import status_json
-from polycnc.servers.http._found import JSON, ONE, Found, answer, body
+from polycnc.servers.http._found import JSON, ONE, STATUS, Found, answer, body
 
 MOST_SNAPSHOTS = 16
 _Name = Annotated[str, StringConstraints(pattern=r"^[A-Za-z0-9][A-Za-z0-9 _.-]{0,63}$")]
@@ -45,7 +45,7 @@ class SnapshotRoutes:
             summary="Go back to a state that was kept.",
             openapi_extra=asked,
             response_class=Response,
-            responses=answer({"$ref": "#/components/schemas/Status"}),
+            responses=answer(STATUS),
         )(self.restore)
         router.delete(f"{ONE}/snapshots/{{name}}", summary="Forget a snapshot.", status_code=204)(self.forget)
 

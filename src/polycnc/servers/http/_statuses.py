@@ -8,8 +8,11 @@ from starlette.types import ASGIApp, Receive, Scope, Send
 
 from polycnc.errors import PolycncError
 from polycnc.servers.http._documents import status_json
+from polycnc.servers.http._lease import KEY_HEADER
 from polycnc.servers.http._problem import of_error
 from polycnc.servers.machines import ServedMachine
+
+_KEY_HEADER = KEY_HEADER.encode()
 
 
 class Statuses:
@@ -25,7 +28,7 @@ class Statuses:
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         """Answer, or hand on."""
         machine = self._by_path.get(scope["path"]) if scope["type"] == "http" else None
-        if machine is None or scope["method"] != "GET":
+        if machine is None or scope["method"] != "GET" or _shows_key(scope):
             await self._app(scope, receive, send)
             return
         try:
@@ -36,3 +39,8 @@ class Statuses:
         head = [(b"content-length", str(len(shown)).encode()), (b"content-type", b"application/json")]
         await send({"type": "http.response.start", "status": 200, "headers": head})
         await send({"type": "http.response.body", "body": shown})
+
+
+def _shows_key(scope: Scope) -> bool:
+    """Tell whether a request shows a key, which the route checks."""
+    return any(name == _KEY_HEADER for name, _ in scope["headers"])

@@ -1,6 +1,6 @@
 """Served machines: a device, who lets its time pass, what happens to it by itself, and the doors to it."""
 
-from polycnc.servers.machines._connections import Patience, notice_loss, peers_of, tell_errors
+from polycnc.servers.machines._connections import Patience, notice_loss, peers_of, take_all_files, tell_errors
 from polycnc.servers.machines._door import LOOPBACK, Door, DoorKind, Wanted
 from polycnc.servers.machines._log import Log
 from polycnc.servers.machines._machine import (
@@ -69,6 +69,7 @@ __all__ = [
     "no_such",
     "notice_loss",
     "peers_of",
+    "take_all_files",
     "tell_errors",
     "treatment_of",
 ]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import contextlib
 import errno
 import socket
 from collections.abc import Callable, Iterable
@@ -53,6 +54,17 @@ class Patience:
         if self._timer is not None:
             self._timer.cancel()
             self._timer = None
+
+
+def take_all_files() -> None:
+    """Let the process have as many files, and so connections, as the system allows it."""
+    try:
+        import resource
+    except ImportError:  # Windows has no such limit
+        return
+    _, most = resource.getrlimit(resource.RLIMIT_NOFILE)
+    with contextlib.suppress(OSError, ValueError):
+        resource.setrlimit(resource.RLIMIT_NOFILE, (most, most))
 
 
 def tell_errors(loop: asyncio.AbstractEventLoop, tell: Callable[[str, str], None]) -> None:

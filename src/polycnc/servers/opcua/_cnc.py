@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from polycnc import __version__
+from polycnc.cnc import ControlError, Refusal
 from polycnc.servers.opcua import _moment as words
 from polycnc.servers.opcua._model import CNC, OF_AXIS, PERCENT, Enumeration, Member, Type
 from polycnc.servers.opcua._moment import At, Of, Several
@@ -64,10 +65,18 @@ def set_mode(at: At, mode: int) -> Mapping[str, Any]:
 
 
 def set_feed_hold(at: At, on: bool) -> Mapping[str, Any] | None:
-    """Return the command that holds the feed, or goes on where it is held; None where nothing is to do."""
+    """Return the command that holds the feed, or goes on where it is held; None where nothing is to do.
+
+    Raises:
+        ControlError: There is no program whose feed could be held.
+    """
     held = at.read("hold")
+    if on and not held:
+        if not at.seen.status.channels[at.number].active:
+            raise ControlError(Refusal.IDLE, "no program is being executed", hint="Start one.")
+        return {"command": "feed_hold", "channel": at.number}
     if on:
-        return None if held else {"command": "feed_hold", "channel": at.number}
+        return None
     return {"command": "cycle_start", "channel": at.number} if held else None
 
 

@@ -54,6 +54,8 @@ class Writes(AttributeService):
             return int(_CODES.BadNotWritable)
         if asked.IndexRange:
             return int(_CODES.BadIndexRangeInvalid)
+        if asked.Value.StatusCode is not None and not asked.Value.StatusCode.is_good():
+            return int(_CODES.BadWriteNotSupported)
         publisher, bound = row
         variant = asked.Value.Value
         if (

@@ -41,6 +41,14 @@ def make_bosch(wanted: Machinery) -> Made:
             raise ControlError(Refusal.DATA, f"this control has no mode {mode}", hint=hint)
         pnc.select_mode(chosen, channel=at(channel))
 
+    def select_program(*, program: str, channel: int) -> None:
+        number = at(channel) or 1
+        if program in pnc.control.programs:  # that doors have put in; else of the root
+            pnc.control.select_program(program, channel=channel)
+            pnc.system.reset_signal(number, False)
+        else:
+            pnc.select_program(program, channel=number)
+
     def cycle_start(*, step: str, line: int, channel: int) -> None:
         if step != Step.RUN.value or line > 1:
             raise ControlError(Refusal.DATA, "this start begins and goes on only", hint="Search the block.")
@@ -48,7 +56,7 @@ def make_bosch(wanted: Machinery) -> Made:
 
     own: dict[str, Callable[..., object]] = {
         "select_mode": select_mode,
-        "select_program": lambda program, channel: pnc.select_program(program, channel=at(channel) or 1),
+        "select_program": select_program,
         "set_mdi": lambda text, channel: pnc.select_blocks(text, channel=at(channel) or 1),
         "cycle_start": cycle_start,
         "reset": lambda channel: pnc.reset(channel=at(channel)),

@@ -10,6 +10,7 @@ from polycnc.controllers.fanuc import PowerMate, PowerMateMode
 from polycnc.errors import UsageError
 from polycnc.servers.focas import numbered
 from polycnc.servers.machines import MemoryPrograms
+from polycnc.servers.process._fanuc_programs import FanucPrograms
 from polycnc.servers.process._fanuc_signals import FanucSignals
 from polycnc.servers.process._fanuc_values import FanucParameters, FanucVariables, set_offset, set_tool
 from polycnc.servers.process._made import Machinery, Made
@@ -33,16 +34,18 @@ def make_fanuc(wanted: Machinery) -> Made:
         Mode.EDIT: PowerMateMode.EDIT,
     }  # fmt: skip
 
+    def of_channel(channel: int | None, do: Callable[[], object]) -> None:
+        if channel is not None:
+            mate.control.channel_status(channel)  # refuses a channel that there is not
+        do()
+
     def select_program(*, program: str, channel: int) -> None:
         if program not in mate.control.programs:
             mate.control.select_program(program, channel=channel)  # refuses it
-        mate.select_program(int(program.removeprefix("O")))
+        of_channel(channel, lambda: mate.select_program(int(program.removeprefix("O"))))
 
     def cycle_start(*, step: str, line: int, channel: int) -> None:
-        mate.control.channel_status(channel)  # refuses a channel that there is not
-        if mate.mode is PowerMateMode.MEM and line > 1:
-            mate.set_cursor(line - 1)
-        mate.cycle_start(step=Step(step))
+        of_channel(channel, lambda: mate.cycle_start(Step(step), line=line if line > 1 else None))
 
     def set_switches(*, machine_lock: bool | None, block_delete: list[int] | None, **more: Any) -> None:
         marks = None if block_delete is None else frozenset(block_delete)
@@ -51,11 +54,11 @@ def make_fanuc(wanted: Machinery) -> Made:
             mate.signals.give_bits(44, 2, machine_lock << 1)
 
     own: dict[str, Callable[..., object]] = {
-        "select_mode": lambda mode, channel: mate.select_mode(modes[Mode(mode)]),
+        "select_mode": lambda mode, channel: of_channel(channel, lambda: mate.select_mode(modes[Mode(mode)])),
         "select_program": select_program,
         "cycle_start": cycle_start,
-        "feed_hold": lambda channel: mate.feed_hold(),
-        "reset": lambda channel: mate.reset(),
+        "feed_hold": lambda channel: of_channel(channel, mate.feed_hold),
+        "reset": lambda channel: of_channel(channel, mate.reset),
         "emergency_stop": lambda on: mate.emergency_stop(on),
         "set_switches": set_switches,
         "set_tool": lambda number, values: set_tool(mate, number, values),
@@ -69,4 +72,7 @@ def make_fanuc(wanted: Machinery) -> Made:
         select_program(program=name, channel=0)
 
     parameters, variables = FanucParameters(mate), FanucVariables(mate)
-    return Made(mate, lambda: mate.control, own, mate.close, load, parameters, variables, FanucSignals(mate))
+    return Made(
+        mate, lambda: mate.control, own, mate.close, load, parameters, variables, FanucSignals(mate),
+        programs=FanucPrograms(mate),
+    )  # fmt: skip

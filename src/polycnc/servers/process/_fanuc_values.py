@@ -145,13 +145,13 @@ def set_tool(mate: PowerMate, number: int, values: Mapping[str, float | str]) ->
             Refusal.DATA, "an offset memory of one value for each tool", hint=f"Give {_LENGTH} alone."
         )
     offsets = mate.tool_offsets
-    length = values.get(_LENGTH, 0.0)
-    if not is_number(length):
-        raise ControlError(Refusal.DATA, f"a length of {shown(length, 40)}", hint="Give mm.")
     decimals = mate.units.increment.decimals
     per_mm = 10.0**decimals if not mate.units.inch_input else 10.0 ** (decimals + 1) / 25.4
     try:
-        offsets.set_all({number: round(length * per_mm)})
+        length = values.get(_LENGTH)
+        if length is not None and not is_number(length):
+            raise ControlError(Refusal.DATA, f"a length of {shown(length, 40)}", hint="Give mm.")
+        offsets.set_all({number: offsets.get(number) if length is None else round(length * per_mm)})
     except KeyError:
         raise ControlError(
             Refusal.NOT_FOUND, f"there is no tool offset {number}", hint=f"Give 1 to {offsets.count}."

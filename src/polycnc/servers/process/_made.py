@@ -9,7 +9,7 @@ from typing import Any
 
 from polycnc.cnc import Control
 from polycnc.machine import Device
-from polycnc.servers.machines import NO_PARAMETERS, NO_SIGNALS, NO_VARIABLES, Screen, Tasks, Values
+from polycnc.servers.machines import NO_PARAMETERS, NO_SIGNALS, NO_VARIABLES, Programs, Screen, Tasks, Values
 
 
 @dataclass(frozen=True, slots=True)
@@ -27,7 +27,8 @@ class Machinery:
 class Made:
     """A device with its control and what its operator does in its own way.
 
-    `load` takes the name and bytes of a file over and selects the program; None where no part programs run.
+    `load` takes the name and bytes of a file over and selects the program; None where no part programs run. `programs`
+    are None where they are those of the control's memory as they come.
     """
 
     device: Device[Any]
@@ -40,3 +41,4 @@ class Made:
     signals: Values = NO_SIGNALS
     screen: Screen | None = None
     tasks: Tasks | None = None
+    programs: Programs | None = None

@@ -21,6 +21,7 @@ from polycnc.servers.machines import (
     ServedMachine,
     Turns,
     Wanted,
+    take_all_files,
     tell_errors,
 )
 from polycnc.servers.process._kinds import KINDS
@@ -73,6 +74,7 @@ class Serving:
             UsageError: A machine cannot be made, or a door cannot be opened; `close` closes the others.
         """
         tell_errors(asyncio.get_running_loop(), self._tell)
+        take_all_files()
         turns = Turns(self.wall)
         for each in wanted:
             self._make(each, _SHARE_S / len(wanted), turns)
@@ -171,7 +173,7 @@ class Serving:
             keeper,
             made.find_control,
             made.own,
-            None,
+            made.programs,
             made.end,
             made.parameters,
             made.variables,

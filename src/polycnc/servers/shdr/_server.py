@@ -31,7 +31,7 @@ class ShdrServer:
         self._see = see(machine.find_control)
         self._address, self._port = address, port
         self._server: asyncio.Server | None = None
-        self._agents: set[asyncio.StreamWriter] = set()
+        self._agents: dict[asyncio.StreamWriter, bool] = {}  # whether it has sent a line; the oldest first
         self._turns: asyncio.Task[None] | None = None
 
     @property
@@ -96,10 +96,10 @@ class ShdrServer:
         """Send a new agent everything, at the present cycle."""
         self._look()
         self._send(writer, self._adapter.everything())
-        self._agents.add(writer)
+        self._agents[writer] = False
 
     async def _serve(self, reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
-        if len(self._agents) >= _MOST_AGENTS:
+        if len(self._agents) >= _MOST_AGENTS and not self._make_room():
             writer.close()
             return
         notice_loss(writer.transport)
@@ -109,6 +109,8 @@ class ShdrServer:
                 return
             self._machine.keeper.submit(lambda: self._begin(writer), lambda _: None)
             while data := await reader.read(_PIECE_BYTES):
+                if b"\n" in data and writer in self._agents:
+                    self._agents[writer] = True
                 for _ in range(data.count(b"\n")):
                     if not await self._treated(writer):
                         return
@@ -117,8 +119,17 @@ class ShdrServer:
         except (OSError, asyncio.CancelledError):
             pass  # it has gone, or the door closes
         finally:
-            self._agents.discard(writer)
+            self._agents.pop(writer, None)
             writer.close()
+
+    def _make_room(self) -> bool:
+        """End the oldest connection that has sent no line; tell whether there is one."""
+        silent = next((writer for writer, has_sent in self._agents.items() if not has_sent), None)
+        if silent is None:
+            return False
+        del self._agents[silent]
+        silent.transport.abort()
+        return True
 
     async def _treated(self, writer: asyncio.StreamWriter) -> bool:
         """Count a connection or a command, and do what a scenario wants with it; tell whether it is answered."""

@@ -168,8 +168,8 @@ class PowerMate:
         """Let the next start in MEM begin at a line of the selected program, from 0."""
         self.state.cursor = line
 
-    def cycle_start(self, step: Step = Step.RUN) -> None:
-        """Start the program of MEM, MDI or RMT (`remote`), or go on where one is interrupted.
+    def cycle_start(self, step: Step = Step.RUN, *, line: int | None = None) -> None:
+        """Start the program of MEM, MDI or RMT (`remote`) at a line or the cursor, or go on with an interrupted one.
 
         Raises:
             ControlError: As `cnc.Control.cycle_start`; feed hold is given; nothing sends a program in RMT.
@@ -185,7 +185,8 @@ class PowerMate:
             self.custom_macros.begin()
             self.signals.apply_lock()
         start = self.mdi.state.start if self.state.mode is PowerMateMode.MDI else self.state.cursor
-        self.control.cycle_start(step=step, line=start + 1)
+        usual = 1 if channel.interrupted else start + 1
+        self.control.cycle_start(step=step, line=usual if line is None else line)
         self.state.cursor = 0
 
     def feed_hold(self) -> None:
