@@ -219,6 +219,7 @@ def test_the_page_operates_the_machine(size: tuple[int, int], served: Served, ch
     page.on("request", lambda asked: None if asked.url.startswith(served.url) else wrong.append(asked.url))
     page.goto(served.url)
     page.wait_for_selector("body:not(.lost)")
+    page.click("#tab-programs")
     page.fill("#new", "O0044")
     page.fill("#text", "O0044\nG91 G1 X40 F60\nM30\n")
     page.click("#save")
@@ -226,6 +227,7 @@ def test_the_page_operates_the_machine(size: tuple[int, int], served: Served, ch
     page.select_option("#names", "O0044")
     page.click("#select")
     page.click("#cycle_start")
+    page.click("#tab-run")
     page.wait_for_selector("#lines [aria-current]")
     page.wait_for_selector("#path:not([data-done='0']):not([data-points='0']) canvas")
     assert page.locator("#charts canvas").count() == 2
@@ -291,6 +293,7 @@ def operate_the_pages(page: Any, served: Served) -> None:
     page.click("#keep")
     page.click("#restore-snapshot")
     until(page, lambda: served.http.get("/snapshots").json()[0]["name"] == "snapshot")
+    page.click("#tab-run")
     page.click("#lines li:nth-child(2)")
     page.click("#breakpoint")
     page.wait_for_selector("#lines li:nth-child(2).breakpoint")
@@ -304,6 +307,7 @@ def operate_the_pages(page: Any, served: Served) -> None:
     assert page.locator("#X-work").bounding_box()["height"] > 30
     page.click("#far")
     operate_the_lease(page, served)
+    page.click("#tab-run")
     for name in ("Top", "Front", "Side", "3-D"):
         page.click(f"#views button:has-text('{name}')")
 

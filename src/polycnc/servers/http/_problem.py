@@ -51,7 +51,8 @@ def of_error(error: PolycncError) -> Response:
         return problem(409, error.what, error.hint, number=NUMBERS[reason], reason=reason.value)
     if isinstance(error, MachineError):
         return problem(503, error.what, error.hint)
-    return problem(422, error.what, error.hint)
+    place = getattr(error, "position", None)
+    return problem(422, error.what, error.hint, errors=[f"{place}: {error.what}"] if place else [])
 
 
 _TITLES = {

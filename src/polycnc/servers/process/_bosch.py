@@ -60,5 +60,6 @@ def make_bosch(wanted: Machinery) -> Made:
     variables = ReadValues("variable", pnc.variables)
     parameters = ReadValues("parameter", pnc.system.all_parameters)
     return Made(
-        pnc, lambda: pnc.control, own, pnc.close, load, parameters, variables, screen=BoschScreen(pnc)
-    )
+        pnc, lambda: pnc.control, own, pnc.close, load, parameters, variables, screen=BoschScreen(pnc),
+        folder=wanted.memory,
+    )  # fmt: skip

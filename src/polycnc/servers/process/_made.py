@@ -27,7 +27,8 @@ class Machinery:
 class Made:
     """A device with its control and what its operator does in its own way.
 
-    `load` takes the name and bytes of a file over and selects the program; None where no part programs run.
+    `load` takes the name and bytes of a file over and selects the program; None where no part programs run. `folder`
+    is where the control keeps its programs as files, if it does.
     """
 
     device: Device[Any]
@@ -40,3 +41,4 @@ class Made:
     signals: Values = NO_SIGNALS
     screen: Screen | None = None
     tasks: Tasks | None = None
+    folder: Path | None = None

@@ -15,7 +15,7 @@ class Chart {
     this.build();
     new ResizeObserver(() => this.plot.setSize(this.size)).observe(holder);
   }
-  get size() { return { width: Math.max(this.holder.clientWidth, 50), height: 150 }; }
+  get size() { return { width: Math.max(this.holder.clientWidth, 50), height: Math.max(80, Math.min(150, (this.holder.clientHeight || 210) - 60)) }; } // title and legend are beside it
   build() {
     this.plot?.destroy();
     const soft = colour("--dim"), grid = { stroke: colour("--line"), width: 1 };
@@ -25,7 +25,7 @@ class Chart {
       scales: { x: { time: false, range: () => { const now = this.data[0].at(-1) ?? 0; return [now - LAST_S, now]; } },
         y: { range: (u, low, high) => { const room = 0.08 * Math.max((high ?? 0) - (low ?? 0), this.least); return [Math.min(low ?? 0, 0) - (low < 0 ? room : 0), Math.max(high ?? 0, this.least) + room]; } } },
       axes: [{ ...axis, space: 70, values: (u, all) => all.map((t) => `${Number((t - (this.data[0].at(-1) ?? 0)).toFixed(0))} s`),
-        splits: () => { const now = this.data[0].at(-1) ?? 0; return [-60, -45, -30, -15, 0].map((t) => now + t); } }, { ...axis, size: 64, values: (u, all) => all.map((value) => value.toFixed(this.places)) }],
+        splits: () => { const now = this.data[0].at(-1) ?? 0; return [-60, -45, -30, -15, 0].map((t) => now + t); } }, { ...axis, size: 64, space: 22, values: (u, all) => all.map((value) => value.toFixed(this.places)) }],
       series: [{}, ...this.names.map((label, k) => ({ label, stroke: colour(COLOURS[k % COLOURS.length]), width: 1.5, points: { show: false } }))],
     }, this.data, this.holder);
   }
@@ -44,7 +44,7 @@ export class Charts {
   constructor(holder) {
     this.holder = holder;
     this.drawn = 0;
-    matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => { for (const each of this.all ?? []) each.build(); });
+    document.addEventListener("theme", () => { for (const each of this.all ?? []) each.build(); });
   }
   clear() { this.all = null; }
   add(status, feed) {
