@@ -30,7 +30,7 @@ link.addEventListener("message", ({ detail }) => {
   parts.tabs.inventory(detail.inventory);
   const { breakpoints, tools, offsets, programs } = detail.inventory;
   if (breakpoints) parts.program.setBreakpoints(breakpoints);
-  if (programs) parts.program.forget();
+  if (programs) parts.program.setPrograms(programs);
   else if (tools || offsets) drawPath(parts.program.name);
 });
 
@@ -122,7 +122,7 @@ function buildTools(machines) {
   const list = shortcutList();
   document.body.append(list);
   $("tools").replaceChildren(machine, rate, button("one_cycle", TEXTS.one_cycle, () => clock({ step: 1 })), button("next_event", TEXTS.next_event, () => clock({ jump: MOST_JUMP })),
-    toggle("far", TEXTS.far, (on) => { document.body.classList.toggle("far", on); kept.set("far", on); }), button("help", TEXTS.help, () => list.showModal()), colours, link.lease.button);
+    toggle("far", TEXTS.far, (on) => { document.body.classList.toggle("far", on); kept.set("far", on); }), button("help", TEXTS.help, () => (list.open ? list.close() : list.show())), colours, link.lease.button);
   const header = document.querySelector("header"); // what is sticky of it on a small screen begins after the tools
   new ResizeObserver(() => header.style.setProperty("--tools", `${$("tools").offsetHeight}px`)).observe($("tools"));
   put($("stop"), TEXTS.stop);

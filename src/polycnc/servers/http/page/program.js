@@ -7,7 +7,7 @@ const minutes = (s) => `${Math.floor(s / 60)}:${String(Math.floor(s % 60)).padSt
 
 export class Program {
   constructor(link, changed) {
-    Object.assign(this, { link, changed, name: "", lines: [], first: 0, running: 0, chosen: 0, breakpoints: [], selected: "" });
+    Object.assign(this, { link, changed, name: "", lines: [], first: 0, running: 0, chosen: 0, breakpoints: [], selected: "", known: null });
     this.holder = $("lines");
     $("steps").replaceChildren(
       button("from_line", TEXTS.from_line, () => this.fromLine()), button("breakpoint", TEXTS.breakpoint, () => this.toggleBreakpoint()),
@@ -27,7 +27,7 @@ export class Program {
     this.selected = channel.program ?? "";
     const calls = (block?.stack ?? []).map((call) => `${call.program}:${call.line}${call.repeat > 1 ? ` ×${call.repeat}` : ""}`);
     put($("name"), [...calls, block?.program ?? channel.program ?? TEXTS.no_program].join(" › "));
-    put($("progress"), [block ? `${TEXTS.line} ${block.line} / ${block.lines}` : "", timers?.cycle ? `${TEXTS.cycle_time} ${minutes(timers.cycle)}` : "",
+    put($("progress"), [block ? `${TEXTS.line} ${block.line} / ${block.lines}` : "", block && !this.lines.length ? block.text : "", timers?.cycle ? `${TEXTS.cycle_time} ${minutes(timers.cycle)}` : "",
       left_s > 0 ? `${TEXTS.left} ${minutes(left_s)}` : "", parts?.made ? `${TEXTS.parts_made} ${parts.made}` : ""].filter(Boolean).join(" · "));
     const wanted = block && ["active", "hold", "stopped"].includes(channel.run_state) ? block.program : this.selected;
     if (wanted !== this.name) this.load(wanted);
@@ -42,14 +42,18 @@ export class Program {
     this.draw(0);
     this.choose(0);
     this.changed(name);
-    if (!name) return;
-    const answer = await this.link.quietly(`programs/${encodeURIComponent(name)}`); // blocks put in by hand have no text here
+    if (!this.known?.has(name)) return; // blocks put in by hand, or programs that are not in the memory
+    const answer = await this.link.quietly(`programs/${encodeURIComponent(name)}`);
     if (!answer || this.name !== name) return;
     this.lines = (await answer.text()).replace(/\r?\n$/, "").split(/\r?\n/);
     this.draw(0);
     this.run(this.running);
   }
-  forget() { this.name = null; }
+  // The memory has these programs, some of them changed.
+  setPrograms(all) {
+    this.known = new Set(all.map((entry) => entry.name));
+    this.name = null;
+  }
 
   // Put lines from `first` on into the page.
   draw(first) {

@@ -5,7 +5,7 @@ import { Page } from "/page_base.js";
 import { TEXTS } from "/texts.js";
 import "/editor.js";
 
-const CHECK_MS = 500, MOST_CHECKED = 200_000, NEAR = 3, MOST_FILES = 100;
+const CHECK_MS = 500, ASK_MS = 4000, MOST_CHECKED = 200_000, NEAR = 3, MOST_FILES = 100;
 const at = (name) => `programs/${encodeURIComponent(name)}`;
 const nameOf = (file) => file.name.replace(/\.[^.]*$/, "");
 
@@ -27,7 +27,7 @@ class Programs extends Page {
     this.differences = make("div", { id: "differences", class: "wide", tabindex: "0", hidden: "" });
     this.replaceChildren(
       make("p", { class: "row" }, this.names, button("select", TEXTS.select, () => this.link.command("select_program", { program: this.names.value })),
-        button("edit", TEXTS.edit, () => this.edit()), this.download, button("remove", TEXTS.remove, () => this.remove())),
+        button("edit", TEXTS.edit, () => this.edit()), this.download, button("remove", TEXTS.remove, ({ currentTarget }) => this.remove(currentTarget))),
       make("p", { class: "row" }, this.name, button("save", TEXTS.save, () => this.save()), button("compare", TEXTS.compare, () => this.compare()),
         button("bring", TEXTS.bring, () => this.file.click()), this.file, make("span", { class: "hint inline" }, TEXTS.drop)),
       this.editor, this.found, this.differences);
@@ -40,9 +40,9 @@ class Programs extends Page {
   }
 
   list() {
-    const chosen = this.names.value;
+    const chosen = this.wanted ?? this.names.value; // one that was saved is chosen as soon as it is in the list
     this.names.replaceChildren(...(this.parts.programs ?? []).map((entry) => make("option", { value: entry.name }, `${entry.name} ${entry.comment}`)));
-    if (chosen) this.names.value = chosen;
+    if ((this.parts.programs ?? []).some((entry) => entry.name === chosen)) { this.names.value = chosen; this.wanted = null; }
     this.point();
   }
   point() {
@@ -64,12 +64,23 @@ class Programs extends Page {
     this.check();
   }
   async save() {
-    if (!this.name.value.trim()) { say(TEXTS.name_it); this.name.focus(); return; }
-    if (await this.link.send("PUT", at(this.name.value.trim()), this.editor.value)) { say(TEXTS.saved(this.name.value.trim())); this.wanted = this.name.value.trim(); }
+    const name = this.name.value.trim();
+    if (!name) { say(TEXTS.name_it); this.name.focus(); return; }
+    if (!(await this.link.send("PUT", at(name), this.editor.value))) return;
+    say(TEXTS.saved(name));
+    this.wanted = name;
+    this.list();
   }
-  remove() {
-    const name = this.names.value;
-    if (name && confirm(TEXTS.sure(name))) this.link.send("DELETE", at(name));
+  // The first press asks, the second one deletes; a question of the browser would hold up the whole page.
+  remove(key) {
+    const name = this.names.value, sure = key.dataset.name === name;
+    const ask = (text, of) => { key.textContent = text; key.dataset.name = of; };
+    clearTimeout(this.asking);
+    ask(TEXTS.remove, "");
+    if (!name) return;
+    if (sure) { this.link.send("DELETE", at(name)); return; }
+    ask(TEXTS.sure(name), name);
+    this.asking = setTimeout(() => ask(TEXTS.remove, ""), ASK_MS);
   }
 
   // One file is put into the editor; several go into the memory, where none is replaced.

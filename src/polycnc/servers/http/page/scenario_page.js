@@ -32,15 +32,15 @@ class ScenarioPage extends Page {
     const answer = await fetch(this.link.url("scenario"), { method: "PUT", body: this.editor.value, headers: { "polycnc-key": this.link.lease.key } }).catch(() => null);
     const told = answer ? await answer.json() : { detail: TEXTS.lost, hint: "" };
     put(this.wrong, answer?.ok ? "" : `${told.detail}\n${told.hint}`);
-    const [, line, column] = /:(\d+):(\d+): /.exec(told.errors?.[0] ?? "") ?? [];
-    this.editor.show(line ? [{ line: Number(line), column: Number(column), text: told.detail, hint: told.hint }] : []);
+    const places = (told.errors ?? []).map((each) => /:(\d+):(\d+): (.*)/s.exec(each)).filter(Boolean);
+    this.editor.show(places.map(([, line, column, text]) => ({ line: Number(line), column: Number(column), text })));
     if (answer?.ok) this.tell(told);
   }
 
   async again(first = false) {
     const told = await this.link.json("scenario");
     if (!told) { this.close(); return; }
-    if (first) this.editor.value = told.source || TEXTS.scenario_example;
+    if (first && !this.editor.value) this.editor.value = told.source || TEXTS.scenario_example;
     this.tell(told);
   }
   tell(told) {

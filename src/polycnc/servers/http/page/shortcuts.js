@@ -40,6 +40,7 @@ export function shortcutList() {
   const dialog = make("dialog", { id: "shortcuts", "aria-label": TEXTS.shortcuts },
     make("h2", {}, TEXTS.shortcuts),
     make("table", {}, ...SHORTCUTS.map(({ keys, press, focus }) => line(keys, TEXTS.does[press ?? focus])), ...BY_HAND.map((name) => line(...TEXTS.by_hand[name]))),
-    make("form", { method: "dialog" }, make("button", {}, TEXTS.close)));
+    make("form", { method: "dialog" }, make("button", { autofocus: "" }, TEXTS.close)));
+  dialog.addEventListener("keydown", (event) => { if (event.key === "Escape") dialog.close(); });
   return dialog;
 }

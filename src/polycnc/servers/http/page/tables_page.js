@@ -21,7 +21,7 @@ class Tools extends Page {
       button(`remove-tool-${number}`, TEXTS.remove, () => this.link.send("DELETE", `tools/${number}`))));
     const number = make("input", { id: "new-tool", inputmode: "numeric", placeholder: TEXTS.number, "aria-label": TEXTS.number, class: "cell" });
     const add = button("add-tool", TEXTS.add, async () => { if (await set(number.value.trim(), { length_mm: 0 })) this.show(); });
-    this.replaceChildren(table([TEXTS.number, ...fields.map((key) => TEXTS.tool_fields[key]), TEXTS.text, "", ""], rows), make("p", { class: "row" }, number, add), make("p", { class: "hint" }, TEXTS.touch_hint));
+    this.replaceChildren(!rows.length ? TEXTS.none : table([TEXTS.number, ...fields.map((key) => TEXTS.tool_fields[key]), TEXTS.text, "", ""], rows), make("p", { class: "row" }, number, add), make("p", { class: "hint" }, TEXTS.touch_hint));
   }
 
   // The tool touches Z 0 of the work offset in force: what is left of Z is its length.

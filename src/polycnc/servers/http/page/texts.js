@@ -22,7 +22,7 @@ export const TEXTS = {
   // pages
   all_pages: "Pages",
   pages: { run: "Run", programs: "Programs", tools: "Tools", offsets: "Offsets", parameters: "Parameters", variables: "Variables", alarms: "Alarms", signals: "I/O", screen: "Screen", tasks: "Tasks", scenario: "Scenario", snapshots: "Snapshots", connections: "Connections" },
-  number: "Number", value: "Value", meaning: "Meaning", text: "Text", name: "Name", add: "Add", remove: "Delete", none: "There are none.", no_number: "This is no number.", filter: "Number or word", more: (count) => `${count} more: write more of the name.`,
+  number: "Number", value: "Value", meaning: "Meaning", text: "Text", name: "Name", add: "Add", remove: "Delete", none: "There are none.", no_number: "This is no number.", filter: "Number or word", more: (count) => `${count} more: name those that you look for.`,
   programs: "Programs", select: "Select", edit: "Edit", edit_text: "Text of the program", save: "Save", download: "Download", bring: "Open file", compare: "Compare",
   drop: "or drop files here", name_it: "Give it a name.", saved: (name) => `${name} is saved.`, sure: (name) => `Delete ${name}?`, brought: (count) => `${count} programs are saved.`, left_out: (names) => `Left out: ${names}.`,
   no_errors: "No errors.", elsewhere: "elsewhere", too_long: "This text is too long to be checked while it is written.",

@@ -65,7 +65,7 @@ class Watched extends Values {
     if (this.list.contains(document.activeElement)) return; // somebody writes into it
     const part = this.constructor.needs, all = await this.link.json(`${part}?names=${encodeURIComponent(this.names)}`);
     if (!all) { this.close(); return; }
-    if (!this.list.contains(document.activeElement)) this.list.replaceChildren(all.length ? this.rows(part, all) : TEXTS.none);
+    if (!this.list.contains(document.activeElement)) this.list.replaceChildren(all.length ? this.rows(part, all) : TEXTS.none, all.length > MOST_ROWS ? make("p", { class: "hint" }, TEXTS.more(all.length - MOST_ROWS)) : "");
   }
 }
 class Variables extends Watched {
