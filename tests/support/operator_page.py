@@ -172,7 +172,7 @@ def lose_the_connection(page: Any, served: Any) -> None:
     """Hold a jog key while the server stops answering: numbers turn grey, the key is let go, and it comes back."""
     choose(page, "jog")
     page.evaluate("document.activeElement.blur()")
-    page.keyboard.down("ArrowLeft")
+    page.keyboard.down("ArrowRight")
     until(page, lambda: served.status()["axes"]["X"]["manual"] == "jog")
     served.process.send_signal(signal.SIGSTOP)
     try:
@@ -182,7 +182,7 @@ def lose_the_connection(page: Any, served: Any) -> None:
         served.process.send_signal(signal.SIGCONT)
     page.wait_for_selector("body:not(.lost)")
     until(page, lambda: served.status()["axes"]["X"]["manual"] == "none")  # though the arrow is still down
-    page.keyboard.up("ArrowLeft")
+    page.keyboard.up("ArrowRight")
 
 
 def operate_the_pages(page: Any, served: Any) -> None:

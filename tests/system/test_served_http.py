@@ -252,6 +252,7 @@ def test_the_page_operates_the_machine(size: tuple[int, int], served: Served, ch
     page.evaluate("window.dispatchEvent(new Event('blur'))")
     while served.status()["axes"]["X"]["manual"] != "none":
         page.wait_for_timeout(20)
+    page.keyboard.up("ArrowRight")
     if size[0] > 1000:
         operator_page.operate(page, served)
     for width, height in {size, (820, 1180)} if size[0] > 1000 else {size}:
