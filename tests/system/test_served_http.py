@@ -181,8 +181,8 @@ def test_a_taken_port_ends_it_with_its_name(served: Served) -> None:
     assert done.stdout == ""
 
 
-EXPECTED = r"409 .*/machine/commands|409 .*/pnc/path|422 .*/machine/scenario"
-"""What the page is refused: while another commands, the path of CPL, a scenario that says what cannot be."""
+EXPECTED = r"409 .*/machine/commands|422 .*/machine/scenario"
+"""What the page is refused: while another commands, and a scenario that says what cannot be."""
 
 
 @pytest.fixture(scope="module")

@@ -143,8 +143,8 @@ def test_tasks_of_a_board_are_loaded_started_and_stopped() -> None:
 
 def test_each_kind_of_machine_says_what_it_has(tmp_path: Path) -> None:
     parts = {
-        "plain": ["control", "parameters", "variables", "signals"],
-        "fanuc": ["control", "parameters", "variables", "signals"],
+        "plain": ["control", "path", "parameters", "variables", "signals"],
+        "fanuc": ["control", "path", "parameters", "variables", "signals"],
         "bosch": ["control", "parameters", "variables", "signals", "screen"],
         "apci": ["tasks"],
         "imc": ["parameters"],

@@ -90,7 +90,8 @@ class ServedMachine:
     def parts(self) -> list[str]:
         """What it has of what only some machines have."""
         has = {
-            "control": self.find_control is not None,
+            "control": self.control is not None,
+            "path": self.control is not None and self.control.dialect.language != "cpl",
             "parameters": self.parameters is not NO_PARAMETERS,
             "variables": self.variables is not NO_VARIABLES,
             "signals": self.signals is not NO_SIGNALS,

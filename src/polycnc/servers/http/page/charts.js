@@ -15,13 +15,18 @@ class Chart {
     this.build();
     new ResizeObserver(() => this.plot.setSize(this.size)).observe(holder);
   }
-  get size() { return { width: Math.max(this.holder.clientWidth, 50), height: Math.max(80, Math.min(150, (this.holder.clientHeight || 210) - 60)) }; } // title and legend are beside it
+  // The height is what is left beside the head, which is title and names in their colours.
+  get size() { return { width: Math.max(this.holder.clientWidth, 50), height: Math.max(80, Math.min(150, this.holder.clientHeight - 24)) }; }
   build() {
     this.plot?.destroy();
     const soft = colour("--dim"), grid = { stroke: colour("--line"), width: 1 };
     const axis = { stroke: soft, grid, ticks: grid, font: "12px system-ui" };
+    const head = document.createElement("p");
+    head.append(this.title, ...this.names.map((name) => Object.assign(document.createElement("b"), { textContent: name })));
+    head.querySelectorAll("b").forEach((name, k) => { name.style.color = colour(COLOURS[k % COLOURS.length]); });
+    this.holder.replaceChildren(head);
     this.plot = new uPlot({
-      ...this.size, title: this.title, cursor: { show: false }, legend: { live: false },
+      ...this.size, cursor: { show: false }, legend: { show: false },
       scales: { x: { time: false, range: () => { const now = this.data[0].at(-1) ?? 0; return [now - LAST_S, now]; } },
         y: { range: (u, low, high) => { const room = 0.08 * Math.max((high ?? 0) - (low ?? 0), this.least); return [Math.min(low ?? 0, 0) - (low < 0 ? room : 0), Math.max(high ?? 0, this.least) + room]; } } },
       axes: [{ ...axis, space: 70, values: (u, all) => all.map((t) => `${Number((t - (this.data[0].at(-1) ?? 0)).toFixed(0))} s`),

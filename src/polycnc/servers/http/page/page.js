@@ -77,7 +77,7 @@ function showKeys(status) {
 // Where the program goes, asked anew when it, a tool or an offset has changed.
 function drawPath(name) {
   clearTimeout(drawPath.timer);
-  if (!name) { path.show(null); return; }
+  if (!name || !link.has("path")) { path.show(null); return; }
   drawPath.timer = setTimeout(async () => {
     const answer = await fetch(link.url(`path?program=${encodeURIComponent(name)}`)).catch(() => null);
     if (parts.program.selected !== name || !answer) return;

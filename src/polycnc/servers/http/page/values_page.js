@@ -17,7 +17,7 @@ class Values extends Page {
       return this.input(value, label, (found) => set(wrap(parse(found))));
     };
     if (each.value && typeof each.value === "object" && !Array.isArray(each.value)) {
-      for (const [axis, value] of Object.entries(each.value)) cell.append(make("label", {}, axis, " ", one(value, `${each.name} ${axis}`, (found) => ({ [axis]: found }))));
+      for (const [axis, value] of Object.entries(each.value)) cell.append(make("label", {}, `${axis}: `, one(value, `${each.name} ${axis}`, (found) => ({ [axis]: found }))));
     } else cell.append(one(Array.isArray(each.value) ? each.value.join(", ") : each.value, each.name, (found) => found));
     return cell;
   }
