@@ -72,12 +72,12 @@ def operate_by_hand(page: Any, served: Any) -> None:
     page.keyboard.press("Alt+m")
     page.keyboard.type("G91")
     page.keyboard.press("Shift+Enter")
-    page.keyboard.type("G1 X-2.5 F3000")
+    page.keyboard.type("G1 X-2.5 Z1.5 F3000")
     page.keyboard.press("Enter")
     until(page, lambda: abs(position(served) - before + 2.5) < 1e-6)
     until(page, lambda: page.input_value("#mdi") == "")
     page.keyboard.press("ArrowUp")
-    assert page.input_value("#mdi") == "G91\nG1 X-2.5 F3000"
+    assert page.input_value("#mdi") == "G91\nG1 X-2.5 Z1.5 F3000"
     page.reload()
     page.wait_for_selector("body:not(.lost)")
     assert page.locator("#history option").count() == 2
@@ -196,6 +196,20 @@ def operate_the_pages(page: Any, served: Any) -> None:
     page.wait_for_selector("[aria-label='G55 X'].refused")
     page.click("#teach-G56")
     until(page, lambda: "X" in served.http.get("/offsets").json().get("G56", {}))
+    axes = served.status()["axes"]
+    served.http.put("/offsets/EXT", json={"values": {"X": 1.25}})
+    until(page, lambda: page.input_value("[aria-label='EXT X']") == "1.25")
+    page.click("#teach-G57-X")
+    until(page, lambda: served.http.get("/offsets").json().get("G57") is not None)
+    assert abs(served.http.get("/offsets").json()["G57"]["X"] - axes["X"]["machine"] + 1.25) < 1e-6
+    served.http.put("/offsets/EXT", json={"values": {"X": 0.0}})
+    page.click("#tab-tools")
+    page.fill("#new-tool", "7")
+    page.click("#add-tool")
+    page.click("#touch-7")
+    until(page, lambda: served.http.get("/tools").json()["7"]["length_mm"] == axes["Z"]["work"] == 1.5)
+    page.click("#remove-tool-7")
+    until(page, lambda: "7" not in served.http.get("/tools").json())
     page.click("#tab-variables")
     page.fill("#watched-variables", "#500,#501")
     page.press("#watched-variables", "Enter")

@@ -27,8 +27,7 @@ class Tools extends Page {
   // The tool touches Z 0 of the work offset in force: what is left of Z is its length.
   async touch(number, set) {
     const { axes, channels: [channel] } = this.link.status;
-    const zero = (channel.offsets ?? []).reduce((sum, each) => sum + (each.values.Z ?? 0), 0);
-    if (await set(number, { length_mm: rounded(axes.Z.machine - zero) })) say(TEXTS.touched);
+    if (await set(number, { length_mm: rounded(axes.Z.work + channel.tool.compensation_mm) })) say(TEXTS.touched);
     this.show();
   }
 }
