@@ -286,6 +286,9 @@ def operate_the_lease(page: Any, served: Any) -> None:
     until(page, lambda: served.http.get("/lease").json()["holder"] == "Zoë")
     assert served.command("reset").status_code == 409
     page.click("#reset")
+    other = {"operator": "Zoë", "key": "another-key-1", "take": True}  # two people of one name
+    assert served.http.post("/lease", json=other).status_code == 200
+    page.wait_for_selector("body.watching #lease:has-text('Zoë commands')")
     other = {"operator": "Ann", "key": "another-key-1", "take": True}
     assert served.http.post("/lease", json=other).status_code == 200
     page.wait_for_selector("body.watching #lease:has-text('Ann commands')")

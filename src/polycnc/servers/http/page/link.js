@@ -10,7 +10,7 @@ export class Link extends EventTarget {
   constructor() {
     super();
     Object.assign(this, { name: "", parts: [], status: null, socket: null, seen: -Infinity, lost: true });
-    this.lease = new Lease((rest, options) => this.ask(rest, options));
+    this.lease = new Lease(this);
     setInterval(() => { if (performance.now() - this.seen > STALE_MS) this.lose(); }, LOOK_MS);
   }
 

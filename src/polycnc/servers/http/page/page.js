@@ -14,7 +14,7 @@ import { THEMES, theme, wear } from "/theme.js";
 import "/axes.js";
 
 const SWITCHES = ["single_block", "dry_run", "optional_stop", "block_delete", "machine_lock"];
-const RATES = [0, 0.1, 0.5, 1, 2, 5, 10, 50], REDRAW_MS = 300, MOST_JUMP = 1_000_000;
+const RATES = [0, 0.1, 0.5, 1, 2, 5, 10, 50], REDRAW_MS = 300, MOST_JUMP = 60_000;
 
 const link = new Link(), path = new Path($("path"), $("views")), charts = new Charts($("charts")), axes = document.querySelector("cnc-axes"), runPage = $("page-run");
 let parts = null; // of the machine that is looked at: what is built for it
@@ -135,6 +135,7 @@ function buildTools(machines) {
 }
 
 async function choose(machine) {
+  if (link.name && link.lease.mine) await link.lease.release();
   parts?.manual.releaseAll();
   parts?.tabs.close();
   link.leave();
