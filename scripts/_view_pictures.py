@@ -65,7 +65,7 @@ def operate(browser: Browser) -> None:
                 {"command": "cycle_start"},
             ):
                 machine.post("/commands", json=asked).raise_for_status()
-        page = browser.new_page(viewport={"width": 1280, "height": 860}, color_scheme="light")
+        page = browser.new_page(viewport={"width": 1280, "height": 800}, color_scheme="light")
         page.goto(found[0])
         page.wait_for_timeout(20_000)
         page.screenshot(path=IMAGES / "operate.png")

@@ -30,7 +30,7 @@ def served_machine(kind: str, machinery: Machinery) -> ServedMachine:
     machine = ServedMachine(
         "m", kind, made.device, served, keeper, made.find_control, made.own, made.programs, end=made.end,
         parameters=made.parameters, variables=made.variables, signals=made.signals,
-        screen=made.screen, tasks=made.tasks,
+        screen=made.screen, tasks=made.tasks, folder=made.folder,
     )  # fmt: skip
     keeper.start()
     return machine

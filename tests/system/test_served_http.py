@@ -16,6 +16,7 @@ from typing import Any
 import pytest
 from hypothesis import Phase, given, settings
 
+from support import operator_page
 from support.browser import browser, new_page
 from support.command import polycnc, python
 from support.focas_line import Line
@@ -180,8 +181,8 @@ def test_a_taken_port_ends_it_with_its_name(served: Served) -> None:
     assert done.stdout == ""
 
 
-EXPECTED = r"409 .*/machine/commands|409 .*/pnc/path|404 .*/pnc/programs/ask\.npg"
-"""What the page is refused: while another commands, the path of CPL, the text of a program outside the memory."""
+EXPECTED = r"409 .*/machine/commands|422 .*/machine/scenario"
+"""What the page is refused: while another commands, and a scenario that says what cannot be."""
 
 
 @pytest.fixture(scope="module")
@@ -219,6 +220,7 @@ def test_the_page_operates_the_machine(size: tuple[int, int], served: Served, ch
     page.on("request", lambda asked: None if asked.url.startswith(served.url) else wrong.append(asked.url))
     page.goto(served.url)
     page.wait_for_selector("body:not(.lost)")
+    page.click("#tab-programs")
     page.fill("#new", "O0044")
     page.fill("#text", "O0044\nG91 G1 X40 F60\nM30\n")
     page.click("#save")
@@ -226,6 +228,7 @@ def test_the_page_operates_the_machine(size: tuple[int, int], served: Served, ch
     page.select_option("#names", "O0044")
     page.click("#select")
     page.click("#cycle_start")
+    page.click("#tab-run")
     page.wait_for_selector("#lines [aria-current]")
     page.wait_for_selector("#path:not([data-done='0']):not([data-points='0']) canvas")
     assert page.locator("#charts canvas").count() == 2
@@ -249,9 +252,9 @@ def test_the_page_operates_the_machine(size: tuple[int, int], served: Served, ch
     page.evaluate("window.dispatchEvent(new Event('blur'))")
     while served.status()["axes"]["X"]["manual"] != "none":
         page.wait_for_timeout(20)
+    page.keyboard.up("ArrowRight")
     if size[0] > 1000:
-        operate_the_pages(page, served)
-        operate_the_others(page, served)
+        operator_page.operate(page, served)
     for width, height in {size, (820, 1180)} if size[0] > 1000 else {size}:
         page.set_viewport_size({"width": width, "height": height})
         assert page.locator("#stop").bounding_box()["y"] < height
@@ -262,109 +265,6 @@ def test_the_page_operates_the_machine(size: tuple[int, int], served: Served, ch
     assert [each for each in wrong if not each.startswith("Failed to load resource")] == []
     assert [each for each in failed if not re.search(EXPECTED, each)] == []
     page.close()
-
-
-def operate_the_pages(page: Any, served: Served) -> None:
-    """Set an offset, teach one, watch and set a variable, find a parameter, keep and restore, set a breakpoint."""
-    page.click("#tab-offsets")
-    page.fill("[aria-label='G55 Y']", "-12.5")
-    page.press("[aria-label='G55 Y']", "Enter")
-    until(page, lambda: served.http.get("/offsets").json().get("G55", {}).get("Y") == -12.5)
-    page.fill("[aria-label='G55 X']", "much")
-    page.press("[aria-label='G55 X']", "Enter")
-    page.wait_for_selector("[aria-label='G55 X'].refused")
-    page.click("#teach-G56")
-    until(page, lambda: "X" in served.http.get("/offsets").json().get("G56", {}))
-    page.click("#tab-variables")
-    page.fill("#watched-variables", "#500,#501")
-    page.press("#watched-variables", "Enter")
-    page.fill("[aria-label='#501']", "7.25")
-    page.press("[aria-label='#501']", "Enter")
-    until(page, lambda: served.http.get("/variables/501").json()["value"] == 7.25)
-    page.click("#tab-parameters")
-    page.fill("#filter", "1320")
-    page.wait_for_selector("[aria-label='1320 X']")
-    page.click("#tab-tools")
-    page.click("#tab-alarms")
-    page.wait_for_selector("#page-alarms td:has-text('EMERGENCY'), #page-alarms td:has-text('mergency')")
-    page.click("#tab-snapshots")
-    page.click("#keep")
-    page.click("#restore-snapshot")
-    until(page, lambda: served.http.get("/snapshots").json()[0]["name"] == "snapshot")
-    page.click("#lines li:nth-child(2)")
-    page.click("#breakpoint")
-    page.wait_for_selector("#lines li:nth-child(2).breakpoint")
-    page.click("#breakpoint")
-    page.wait_for_selector("#lines li:nth-child(2):not(.breakpoint)")
-    page.select_option("#rate", "5")
-    until(page, lambda: served.http.get("/clock").json()["rate"] == 5.0)
-    page.select_option("#rate", "1")
-    page.click("#far")
-    page.wait_for_selector("#keys", state="hidden")
-    assert page.locator("#X-work").bounding_box()["height"] > 30
-    page.click("#far")
-    operate_the_lease(page, served)
-    for name in ("Top", "Front", "Side", "3-D"):
-        page.click(f"#views button:has-text('{name}')")
-
-
-def operate_the_others(page: Any, served: Served) -> None:
-    """See and press the screen of a Bosch control, run a task of a board, and come back."""
-    page.click("#tab-signals")
-    page.wait_for_selector("#page-signals [aria-label='D0']")
-    page.fill("[aria-label='D0']", "77")
-    page.press("[aria-label='D0']", "Enter")
-    until(page, lambda: served.http.get("/signals/D0").json()["value"] == 77)
-    page.select_option("#machine", "pnc")
-    page.click("#tab-screen")
-    page.wait_for_selector("#screen[alt*='WHICH HAND?']")
-    until(page, lambda: page.evaluate("document.querySelector('#screen').naturalWidth") > 600)
-    pnc = str(served.http.base_url).replace("/machine/", "/pnc/")
-    page.click("#key-SOFTKEY2:has-text('RIGHT HAND')")
-    until(page, lambda: httpx.get(f"{pnc}variables/%23K%25").json()["value"] == 2)
-    page.select_option("#machine", "board")
-    page.wait_for_selector("#keys", state="hidden")
-    page.fill("#source", "BEGIN WHILE TRUE DO CI7 := CI7 + 1 END.")
-    page.select_option("#task", "2")
-    page.click("#load-task")
-    page.click("#start-2")
-    page.wait_for_selector("#page-tasks tr:has(#start-2) td:has-text('running')")
-    page.click("#stop-2")
-    page.wait_for_selector("#page-tasks tr:has(#start-2) td:has-text('stopped')")
-    page.select_option("#machine", "machine")
-    page.wait_for_selector("#keys", state="visible")
-
-
-def operate_the_lease(page: Any, served: Served) -> None:
-    """Command alone, be taken over by another client, see who commands, and get it back when it ends."""
-    page.click("#tab-connections")
-    page.fill("#operator", "Zoë")
-    page.press("#operator", "Enter")
-    page.wait_for_selector("#page-connections td:has-text('127.0.0.1')")
-    doors = {each["door"]: each for each in served.http.get("/connections").json()}
-    assert f"127.0.0.1:{served.focas_port}" == doors["focas"]["address"]
-    assert len(doors["focas"]["clients"]) == 1
-    assert len(doors["http"]["clients"]) >= 2
-    page.click("#lease")
-    until(page, lambda: served.http.get("/lease").json()["holder"] == "Zoë")
-    assert served.command("reset").status_code == 409
-    page.click("#reset")
-    other = {"operator": "Ann", "key": "another-key-1", "take": True}
-    assert served.http.post("/lease", json=other).status_code == 200
-    page.wait_for_selector("body.watching #lease:has-text('Ann commands')")
-    page.click("#cycle_start")
-    page.wait_for_selector("#said:has-text('Ann commands this machine')")
-    assert served.http.delete("/lease", headers={"polycnc-key": "another-key-1"}).status_code == 204
-    page.wait_for_selector("body:not(.watching) #lease:has-text('Command alone')")
-
-
-def until(page: Any, holds: Any) -> None:
-    """Wait until something holds."""
-    for _ in range(500):
-        if holds():
-            return
-        page.wait_for_timeout(20)
-    raise AssertionError("it does not come")
 
 
 def test_requests_from_the_description_are_answered_as_it_says(served: Served) -> None:

@@ -120,6 +120,29 @@ def test_a_plain_control_shows_what_is_set_for_it_and_sets_what_acts() -> None:
     visit("plain", PLAIN, ask)
 
 
+def test_inputs_are_set_as_the_machine_would_and_outputs_are_read() -> None:
+    async def ask(client: Any, machine: ServedMachine) -> None:
+        rows = (await client.get("/signals")).json()
+        assert [row["name"] for row in rows[:3]] == ["I0", "I1", "I2"]
+        assert (await client.put("/signals/I13", json={"value": 1})).json()["value"] == 1
+        assert (await client.put("/signals/IW7", json={"value": -4711})).status_code == 200
+        io = machine.control.machine.io  # type: ignore[union-attr]
+        assert (io["I13"], io["I12"], io["IW7"]) == (1, 0, -4711)
+        io["O5"] = 1
+        some = (await client.get("/signals", params={"names": "O5, I13"})).json()
+        assert [(row["name"], row["value"], row["writable"]) for row in some] == [
+            ("O5", 1, False),
+            ("I13", 1, True),
+        ]
+        refused(await client.put("/signals/O5", json={"value": 0}), 403)
+        refused(await client.put("/signals/I13", json={"value": 2}), 409)
+        refused(await client.put("/signals/I13", json={"value": True}), 409)
+        refused(await client.put("/signals/I64", json={"value": 1}), 404)
+        assert (io["I13"], io["O5"]) == (1, 1)
+
+    visit("plain", PLAIN, ask)
+
+
 def test_values_of_a_bosch_control_can_be_read(tmp_path: Path) -> None:
     async def ask(client: Any, machine: ServedMachine) -> None:
         rows = {row["name"]: row for row in (await client.get("/parameters")).json()}

@@ -21,7 +21,7 @@ def shows(key: str) -> dict[str, str]:
 
 def test_whoever_does_not_hold_it_changes_nothing_but_may_hold_and_stop() -> None:
     async def ask(client: Any, machine: ServedMachine) -> None:
-        assert (await client.get("/lease")).json() == {"holder": None, "left_s": 0.0}
+        assert (await client.get("/lease")).json() == {"holder": None, "left_s": 0.0, "turn": 0}
         assert (await client.post("/lease", json=ANNA)).json()["holder"] == "Anna"
         before = (await client.get("/status")).json(), (await client.get("/inventory")).json()
         asked = [
@@ -60,7 +60,8 @@ def test_it_is_taken_over_given_back_and_ends_by_itself() -> None:
         assert refused.status_code == 409
         assert "take it over" in refused.json()["hint"]
         taken = (await client.post("/lease", json=BERT | {"take": True})).json()
-        assert taken["holder"] == "Bert"
+        assert (taken["holder"], taken["turn"]) == ("Bert", 2)
+        assert (await client.post("/lease", json=BERT)).json()["turn"] == 2  # going on is no new turn
         assert 19.0 < taken["left_s"] <= 20.0
         assert (await client.delete("/lease", headers=shows("annas-key-4711"))).status_code == 409
         assert (await client.post("/lease", json=ANNA)).status_code == 409

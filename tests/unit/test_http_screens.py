@@ -143,9 +143,9 @@ def test_tasks_of_a_board_are_loaded_started_and_stopped() -> None:
 
 def test_each_kind_of_machine_says_what_it_has(tmp_path: Path) -> None:
     parts = {
-        "plain": ["control", "parameters", "variables"],
-        "fanuc": ["control", "parameters", "variables", "signals"],
-        "bosch": ["control", "parameters", "variables", "screen"],
+        "plain": ["control", "path", "parameters", "variables", "signals"],
+        "fanuc": ["control", "path", "parameters", "variables", "signals"],
+        "bosch": ["control", "parameters", "variables", "signals", "screen"],
         "apci": ["tasks"],
         "imc": ["parameters"],
     }

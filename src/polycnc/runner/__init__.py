@@ -6,7 +6,7 @@ What posting and debugging need is loaded when it is first used.
 from typing import TYPE_CHECKING
 
 from polycnc.on_demand import names_on_demand
-from polycnc.runner._check import CheckReport, check, inspect
+from polycnc.runner._check import CheckReport, check, errors_in, inspect
 from polycnc.runner._execution import LOOP_LIMIT_S
 from polycnc.runner._operations import Operation
 from polycnc.runner._outcome import Alarm, RunMessage, Trace, counted, time_text
@@ -76,6 +76,7 @@ __all__ = [
     "check_view_file",
     "compare",
     "counted",
+    "errors_in",
     "holds_before",
     "inspect",
     "json_schema",

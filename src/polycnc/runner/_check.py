@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from polycnc.cnc import RunOptions, let_pass
+from polycnc.cnc import ProgramRun, RunOptions, let_pass
 from polycnc.errors import ProgramError
 from polycnc.machine import Machine, MachineConfig
-from polycnc.nc import Dialect, ProgramText
+from polycnc.nc import Dialect, Language, ProgramText
 from polycnc.runner._execution import Progress, run_to_end
 from polycnc.runner._program_control import control_for, run_under
 from polycnc.runner._rehearsal import rehearsed
@@ -52,6 +52,33 @@ def check(
     if not strict:
         return report.errors
     return [*report.errors, *map(_as_error, report.remarks)]
+
+
+def errors_in(
+    text: ProgramText,
+    config: MachineConfig,
+    dialect: Dialect,
+    *,
+    language: Language | None = None,
+    texts: Mapping[int, ProgramText] | None = None,
+    progress: Progress | None = None,
+) -> list[ProgramError]:
+    """Return every error of a program of NC blocks or macros on a machine of its own; sub-programs come from `texts`.
+
+    `progress` is called now and then; what it raises ends the check.
+    """
+    if (endless := text.endless_line()) is not None:
+        return [endless]
+    options = RunOptions(stands_at_stops=False, collect_errors=True)
+    run = ProgramRun(
+        Machine(config), text, dialect, language=language, config=config, library=(texts or {}).get,
+        options=options, on_passed=let_pass,
+    )  # fmt: skip
+    try:
+        run_to_end(run, every_cycle=False, progress=progress)
+    except ProgramError as error:
+        return [*run.channel.errors, error]
+    return run.channel.errors
 
 
 def _as_error(remark: Remark) -> ProgramError:

@@ -24,7 +24,7 @@ from polycnc.servers.focas._capture import explain_capture, from_hex
 from polycnc.servers.focas._commands import COMMANDS, WRITING, known
 from polycnc.servers.focas._control import FocasControl
 from polycnc.servers.focas._dissect import Dissector, Field, dissect
-from polycnc.servers.focas._faults import Fault, FaultKind, Faults, Plan, load_faults
+from polycnc.servers.focas._faults import Fault, FaultKind, Faults, Plan, PresentFaults, load_faults
 from polycnc.servers.focas._numbered import number_in, numbered, unframed
 from polycnc.servers.focas._profile import PROFILES, Profile, load_profile
 from polycnc.servers.focas._served import ServedControl
@@ -59,6 +59,7 @@ __all__ = [
     "Layout",
     "Owner",
     "Plan",
+    "PresentFaults",
     "Profile",
     "Reply",
     "Request",

@@ -6,7 +6,7 @@ Nothing here is random and nothing looks at a wall clock: the same script and th
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from enum import StrEnum
 from pathlib import Path
@@ -230,6 +230,37 @@ class Faults:
             control.emergency_stop(False)
         elif course.fault.kind is FaultKind.ALARM:
             control.reset()
+
+
+class PresentFaults(Faults):
+    """What the scenario that is followed now says, whichever that is: faults itself, or something that has `faults`."""
+
+    def __init__(self, scenario: Callable[[], object]) -> None:
+        super().__init__()
+        self._scenario = scenario
+
+    @property
+    def _now(self) -> Faults | None:
+        scenario = self._scenario()
+        found = scenario if isinstance(scenario, Faults) else getattr(scenario, "faults", None)
+        return found if isinstance(found, Faults) else None
+
+    @property
+    def active(self) -> Sequence[Fault]:
+        """The faults that hold now."""
+        return () if (now := self._now) is None else now.active
+
+    def has(self, kind: FaultKind) -> bool:
+        """Whether a fault of a kind holds."""
+        return (now := self._now) is not None and now.has(kind)
+
+    def knows(self, kind: FaultKind) -> bool:
+        """Whether there is a fault of a kind at all."""
+        return (now := self._now) is not None and now.knows(kind)
+
+    def request(self, control: PowerMate) -> Plan:
+        """Count a frame of commands and say what happens to it."""
+        return _NOTHING if (now := self._now) is None else now.request(control)
 
 
 def _union(codes: Sequence[frozenset[tuple[int, int]]]) -> frozenset[tuple[int, int]] | None:

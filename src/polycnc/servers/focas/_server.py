@@ -16,7 +16,7 @@ from polycnc.errors import UsageError
 from polycnc.machine import Host
 from polycnc.servers.calls import MAGIC, CallsServer
 from polycnc.servers.focas._control import FocasControl
-from polycnc.servers.focas._faults import FaultKind, Faults
+from polycnc.servers.focas._faults import FaultKind, Faults, PresentFaults
 from polycnc.servers.focas._profile import Profile
 from polycnc.servers.focas._session import Ending, Session, State
 from polycnc.servers.machines import HostOwner, Keeper, Owner, Patience, ServedMachine, notice_loss, peers_of
@@ -61,10 +61,11 @@ class FocasServer:
     @classmethod
     def of(cls, machine: ServedMachine, profile: Profile, *, address: str, port: int) -> FocasServer:
         """Return the door of a served Power Mate; faults of its scenario act on the connections too."""
-        scenario, control = machine.served.scenario, machine.device
+        control = machine.device
         assert isinstance(control, PowerMate)
-        faults = scenario if isinstance(scenario, Faults) else getattr(scenario, "faults", None)
+        faults = PresentFaults(lambda: machine.served.scenario)
         made = cls(machine.keeper, control, profile, address=address, port=port, faults=faults)
+        machine.served.on_scenario(made.look_again)
         made.calls = CallsServer([machine])
         return made
 
@@ -94,7 +95,15 @@ class FocasServer:
             ) from None
         assert self._server is not None
         self.port = self._server.sockets[0].getsockname()[1]
-        if self.control.faults.knows(FaultKind.UNREACHABLE):
+        self.look_again()
+
+    def look_again(self) -> None:
+        """Follow the script that holds now, where it says that nothing listens."""
+        if (
+            self._watch is None
+            and self._server is not None
+            and self.control.faults.knows(FaultKind.UNREACHABLE)
+        ):
             self._follow()
 
     async def _listen(self) -> None:
@@ -113,7 +122,8 @@ class FocasServer:
         elif not away and self._server is None:
             self._task = loop.create_task(self._come_back())
             return
-        self._watch = loop.call_later(_LISTEN_BEAT_S, self._follow)
+        followed = away or self.control.faults.knows(FaultKind.UNREACHABLE)
+        self._watch = loop.call_later(_LISTEN_BEAT_S, self._follow) if followed else None
 
     async def _come_back(self) -> None:
         with contextlib.suppress(OSError):  # somebody else has the port: tried again

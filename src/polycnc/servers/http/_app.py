@@ -26,17 +26,12 @@ from polycnc.web import served_files, served_text
 
 METHOD_NOT_ALLOWED = 405
 PAGE = Path(__file__).parent / "page"
-FILES = {
-    "": ("index.html", "text/html; charset=utf-8"),
-    "icon.svg": ("icon.svg", "image/svg+xml"),
-    "charts.js": ("charts.js", "text/javascript; charset=utf-8"),
-    "lease.js": ("lease.js", "text/javascript; charset=utf-8"),
-    "page.css": ("page.css", "text/css; charset=utf-8"),
-    "page.js": ("page.js", "text/javascript; charset=utf-8"),
-    "pages.js": ("pages.js", "text/javascript; charset=utf-8"),
-    "path.js": ("path.js", "text/javascript; charset=utf-8"),
-    "texts.js": ("texts.js", "text/javascript; charset=utf-8"),
-}
+_KINDS = {
+    ".html": "text/html; charset=utf-8", ".css": "text/css; charset=utf-8",
+    ".js": "text/javascript; charset=utf-8", ".svg": "image/svg+xml",
+}  # fmt: skip
+FILES = {each.name: _KINDS[each.suffix] for each in PAGE.iterdir() if each.suffix in _KINDS}
+"""The files of the page with their kinds."""
 _LOGIN = """<!doctype html><html lang="en"><meta charset="utf-8"><title>polycnc</title>
 <form method="post" action="/login"><label>Secret <input type="password" name="token" autofocus></label>
 <button>Log in</button></form></html>"""
@@ -73,15 +68,14 @@ def make_app(
     async def page(file: str) -> Response:
         if file not in FILES:
             return problem(404, "there is nothing here", "The page is at /.")
-        name, kind = FILES[file]
-        return FileResponse(PAGE / name, media_type=kind)
+        return FileResponse(PAGE / file, media_type=FILES[file])
 
     app.get("/", include_in_schema=False)(_first_page)
     return guard
 
 
 async def _first_page() -> Response:
-    return FileResponse(PAGE / FILES[""][0], media_type=FILES[""][1])
+    return FileResponse(PAGE / "index.html", media_type=FILES["index.html"])
 
 
 def _add_errors(app: FastAPI, log: Log) -> None:

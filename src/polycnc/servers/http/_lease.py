@@ -34,10 +34,14 @@ class HeldError(PolycncError):
 
 
 class LeaseShown(BaseModel):
-    """Who commands a machine, null if nobody does alone, and for how long without renewing (s)."""
+    """Who commands a machine, null if nobody does alone, and for how long without renewing (s).
+
+    `turn` grows whenever another key takes it: a holder knows by it that the lease is still its own.
+    """
 
     holder: str | None
     left_s: float
+    turn: int
 
 
 class LeaseAsked(BaseModel):
@@ -56,12 +60,14 @@ class Lease:
     def __init__(self) -> None:
         self._holder = self._key = ""
         self._until_s = 0.0
+        self._turn = 0
 
     def shown(self) -> LeaseShown:
         """Return who holds it."""
         left_s = self._until_s - asyncio.get_running_loop().time()
         held = bool(self._key) and left_s > 0.0
-        return LeaseShown(holder=self._holder if held else None, left_s=round(left_s, 3) if held else 0.0)
+        left_s = round(left_s, 3) if held else 0.0
+        return LeaseShown(holder=self._holder if held else None, left_s=left_s, turn=self._turn)
 
     def check(self, key: str) -> None:
         """Refuse whoever does not hold it while somebody does.
@@ -81,6 +87,8 @@ class Lease:
         """
         if not asked.take:
             self.check(asked.key)
+        if asked.key != self._key:
+            self._turn += 1
         self._holder, self._key = asked.operator, asked.key
         self._until_s = asyncio.get_running_loop().time() + asked.seconds
         return self.shown()

@@ -51,7 +51,14 @@ def of_error(error: PolycncError) -> Response:
         return problem(409, error.what, error.hint, number=NUMBERS[reason], reason=reason.value)
     if isinstance(error, MachineError):
         return problem(503, error.what, error.hint)
-    return problem(422, error.what, error.hint)
+    return problem(422, error.what, error.hint, errors=_places(error))
+
+
+def _places(error: PolycncError) -> list[str]:
+    """Return what is wrong with a file, a line for each thing with its place."""
+    parts = getattr(error, "parts", ()) or (error,)
+    placed = [(getattr(each, "position", None), each.what) for each in parts]
+    return [f"{place}: {what}" for place, what in placed if place is not None]
 
 
 _TITLES = {

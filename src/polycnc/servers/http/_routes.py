@@ -11,12 +11,14 @@ from starlette.websockets import WebSocket
 
 from polycnc.servers.commands import COMMANDS, carry_out, model_of
 from polycnc.servers.http._body import json_object
+from polycnc.servers.http._check import CheckRoutes
 from polycnc.servers.http._clock import ClockRoutes
 from polycnc.servers.http._data import DataRoutes
 from polycnc.servers.http._documents import as_json, status_json
 from polycnc.servers.http._found import JSON, ONE, REFUSALS, STATUS, Found, answer, body
 from polycnc.servers.http._lease import KeyShown, LeaseRoutes, Leases, is_for_all
 from polycnc.servers.http._path import PathRoutes
+from polycnc.servers.http._scenarios import ScenarioRoutes
 from polycnc.servers.http._screens import ScreenRoutes
 from polycnc.servers.http._snapshots import SnapshotRoutes
 from polycnc.servers.http._stream import Stream, rate_of
@@ -89,6 +91,8 @@ class Api:
         ClockRoutes(found, router)
         SnapshotRoutes(found, router)
         PathRoutes(found, router)
+        CheckRoutes(found, router)
+        ScenarioRoutes(found, router)
         get(f"{ONE}/connections", summary="The doors, and who is connected.")(self.connections)
         ScreenRoutes(found, router)
         LeaseRoutes(found, leases, router)

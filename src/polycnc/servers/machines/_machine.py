@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
+from pathlib import Path
 from typing import Any, Protocol, TypeVar
 
 from polycnc.cnc import Control
@@ -73,6 +74,8 @@ class ServedMachine:
     signals: Values = NO_SIGNALS
     screen: Screen | None = None
     tasks: Tasks | None = None
+    folder: Path | None = None
+    """Where its control keeps its programs as files, if it does."""
     treat: Callable[[str], Treatment] = _as_usual
     """A door tells its name with every request, and does with it what is said."""
 
@@ -87,7 +90,8 @@ class ServedMachine:
     def parts(self) -> list[str]:
         """What it has of what only some machines have."""
         has = {
-            "control": self.find_control is not None,
+            "control": self.control is not None,
+            "path": self.control is not None and self.control.dialect.language != "cpl",
             "parameters": self.parameters is not NO_PARAMETERS,
             "variables": self.variables is not NO_VARIABLES,
             "signals": self.signals is not NO_SIGNALS,
@@ -105,6 +109,10 @@ class ServedMachine:
     def is_usual(self) -> bool:
         """Whether its doors treat every request as usual."""
         return self.treat is _as_usual
+
+    def treat_as_usual(self) -> None:
+        """Treat every request as usual again."""
+        self.treat = _as_usual
 
     async def ask(self, question: Callable[[], R]) -> R:
         """Ask between two cycles, after what is due, and return the answer.

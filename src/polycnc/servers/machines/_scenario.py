@@ -59,10 +59,23 @@ class ServedDevice(Generic[D]):
         self.device = device
         self._control = control
         self.scenario: Scenario[D] = scenario or Nothing()
+        self._scenario_changed: list[Callable[[], object]] = []
         self.again = again
         self._watches: list[Watch] = []
         self._wanted: list[Callable[[], bool]] = []
         self.scenario.look(device)
+
+    def follow(self, scenario: Scenario[D] | None) -> None:
+        """Follow another scenario from now on, or none."""
+        self.scenario = scenario or Nothing()
+        self.scenario.look(self.device)
+        self.clock.changes += 1
+        for call in self._scenario_changed:
+            call()
+
+    def on_scenario(self, call: Callable[[], object]) -> None:
+        """Call whenever another scenario is followed."""
+        self._scenario_changed.append(call)
 
     def watch(self, look: Callable[[], object], wanted: Callable[[], bool] = lambda: True) -> None:
         """Call `look` from now on once a second of the device's own clock, ten times while something happens.

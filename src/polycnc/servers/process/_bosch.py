@@ -11,6 +11,7 @@ from polycnc.errors import UsageError
 from polycnc.nc import ProgramText
 from polycnc.servers.machines import ReadValues
 from polycnc.servers.process._bosch_screen import BoschScreen
+from polycnc.servers.process._io_values import IoValues
 from polycnc.servers.process._made import Machinery, Made
 
 
@@ -68,5 +69,6 @@ def make_bosch(wanted: Machinery) -> Made:
     variables = ReadValues("variable", pnc.variables)
     parameters = ReadValues("parameter", pnc.system.all_parameters)
     return Made(
-        pnc, lambda: pnc.control, own, pnc.close, load, parameters, variables, screen=BoschScreen(pnc)
-    )
+        pnc, lambda: pnc.control, own, pnc.close, load, parameters, variables,
+        IoValues(lambda: pnc.control), BoschScreen(pnc), folder=wanted.memory,
+    )  # fmt: skip

@@ -6,6 +6,7 @@ from collections.abc import Callable, Mapping
 
 from polycnc.cnc import Control
 from polycnc.servers.machines import MemoryPrograms
+from polycnc.servers.process._io_values import IoValues
 from polycnc.servers.process._made import Machinery, Made
 from polycnc.servers.process._plain_values import MacroValues, PlainParameters
 
@@ -22,7 +23,7 @@ def _plain(wanted: Machinery) -> Made:
         control.select_program(name)
 
     parameters, variables = PlainParameters(control), MacroValues(lambda: control)
-    return Made(control, lambda: control, {}, end, load, parameters, variables)
+    return Made(control, lambda: control, {}, end, load, parameters, variables, IoValues(lambda: control))
 
 
 def _fanuc(wanted: Machinery) -> Made:

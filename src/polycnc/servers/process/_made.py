@@ -28,7 +28,8 @@ class Made:
     """A device with its control and what its operator does in its own way.
 
     `load` takes the name and bytes of a file over and selects the program; None where no part programs run. `programs`
-    are None where they are those of the control's memory as they come.
+    are None where they are those of the control's memory as they come. `folder` is where the control keeps its programs
+    as files, if it does.
     """
 
     device: Device[Any]
@@ -42,3 +43,4 @@ class Made:
     screen: Screen | None = None
     tasks: Tasks | None = None
     programs: Programs | None = None
+    folder: Path | None = None

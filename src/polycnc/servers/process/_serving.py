@@ -180,11 +180,11 @@ class Serving:
             made.signals,
             made.screen,
             made.tasks,
+            made.folder,
         )
         self.machines.append(machine)
         if wanted.story is not None:
-            served.scenario = wanted.story(machine, self.log)
-            served.scenario.look(made.device)
+            served.follow(wanted.story(machine, self.log))
 
 
 def _again(made: Made) -> Callable[[], None]:

@@ -5,9 +5,9 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Annotated, Any, Self
 
-from pydantic import Field, model_validator
+from pydantic import Field, PrivateAttr, model_validator
 
-from polycnc.machine import StrictModel, load_toml, validate
+from polycnc.machine import StrictModel, load_toml, parse_toml, validate
 
 MOST_STEPS = 1000
 _MOST_TIMES = 100_000
@@ -81,6 +81,12 @@ class Script(StrictModel):
 
     title: Annotated[str, Field(max_length=200)] = ""
     step: Annotated[tuple[Step, ...], Field(min_length=1, max_length=MOST_STEPS)]
+    _source: str = PrivateAttr("")
+
+    @property
+    def source(self) -> str:
+        """The text that it was read from."""
+        return self._source
 
     @model_validator(mode="after")
     def _check(self) -> Self:
@@ -100,4 +106,17 @@ def load_script(path: Path) -> Script:
     Raises:
         UsageError: It cannot be read, or says what cannot be.
     """
-    return validate(Script, *load_toml(path))
+    script = validate(Script, *load_toml(path))
+    script._source = path.read_text("utf-8-sig")
+    return script
+
+
+def read_script(text: str, name: str = "scenario") -> Script:
+    """Read the text of a scenario; `name` is what errors call it.
+
+    Raises:
+        ConfigurationError: It says what cannot be.
+    """
+    script = validate(Script, *parse_toml(text, name))
+    script._source = text
+    return script

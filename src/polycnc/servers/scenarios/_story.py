@@ -46,6 +46,15 @@ class _Course:
 
 
 @dataclass(frozen=True, slots=True)
+class StepState:
+    """How far a step is: `done` of its times have begun, and whether it is `on`."""
+
+    step: Step
+    done: int
+    on: bool
+
+
+@dataclass(frozen=True, slots=True)
 class Happened:
     """What happened: the cycle, the step, and `began`, `ended` or why it was refused."""
 
@@ -62,16 +71,38 @@ class Story:
     """
 
     def __init__(self, script: Script, machine: ServedMachine, log: Log | None = None) -> None:
+        self.script = script
         self._machine = machine
         self._log = log or Log()
-        self._begin_s = machine.served.clock.now_s
         self._courses = [_course(step, machine) for step in script.step]
         self._by_name = {each.step.name: each for each in self._courses}
         self._requests: dict[str, int] = {}
         self.happened: list[Happened] = []
         self.faults = _ConnectionFaults(self)
         """What the door of FOCAS asks."""
-        machine.treat = self.request
+        self.begin()
+
+    def begin(self) -> None:
+        """Count times from now on, and treat requests as the scenario says; the one before is closed by then."""
+        self._begin_s = self._machine.served.clock.now_s
+        self._machine.treat = self.request
+
+    @property
+    def steps(self) -> list[StepState]:
+        """The steps, in the order of the file."""
+        return [StepState(each.step, each.done, each.on) for each in self._courses]
+
+    @property
+    def passed_s(self) -> float:
+        """The machine time since it began."""
+        return self._machine.served.clock.now_s - self._begin_s
+
+    def close(self) -> None:
+        """End what is on, and let requests be treated as usual."""
+        for course in self._courses:
+            if course.on and course.action.ends:
+                self._end(course)
+        self._machine.treat_as_usual()
 
     # ------------------------------------------------------------------ time
 

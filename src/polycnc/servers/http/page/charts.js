@@ -15,17 +15,22 @@ class Chart {
     this.build();
     new ResizeObserver(() => this.plot.setSize(this.size)).observe(holder);
   }
-  get size() { return { width: Math.max(this.holder.clientWidth, 50), height: 150 }; }
+  // The height is what is left beside the head, which is title and names in their colours.
+  get size() { return { width: Math.max(this.holder.clientWidth, 50), height: Math.max(80, Math.min(150, this.holder.clientHeight - 24)) }; }
   build() {
     this.plot?.destroy();
     const soft = colour("--dim"), grid = { stroke: colour("--line"), width: 1 };
     const axis = { stroke: soft, grid, ticks: grid, font: "12px system-ui" };
+    const head = document.createElement("p");
+    head.append(this.title, ...this.names.map((name) => Object.assign(document.createElement("b"), { textContent: name })));
+    head.querySelectorAll("b").forEach((name, k) => { name.style.color = colour(COLOURS[k % COLOURS.length]); });
+    this.holder.replaceChildren(head);
     this.plot = new uPlot({
-      ...this.size, title: this.title, cursor: { show: false }, legend: { live: false },
+      ...this.size, cursor: { show: false }, legend: { show: false },
       scales: { x: { time: false, range: () => { const now = this.data[0].at(-1) ?? 0; return [now - LAST_S, now]; } },
         y: { range: (u, low, high) => { const room = 0.08 * Math.max((high ?? 0) - (low ?? 0), this.least); return [Math.min(low ?? 0, 0) - (low < 0 ? room : 0), Math.max(high ?? 0, this.least) + room]; } } },
       axes: [{ ...axis, space: 70, values: (u, all) => all.map((t) => `${Number((t - (this.data[0].at(-1) ?? 0)).toFixed(0))} s`),
-        splits: () => { const now = this.data[0].at(-1) ?? 0; return [-60, -45, -30, -15, 0].map((t) => now + t); } }, { ...axis, size: 64, values: (u, all) => all.map((value) => value.toFixed(this.places)) }],
+        splits: () => { const now = this.data[0].at(-1) ?? 0; return [-60, -45, -30, -15, 0].map((t) => now + t); } }, { ...axis, size: 64, space: 22, values: (u, all) => all.map((value) => value.toFixed(this.places)) }],
       series: [{}, ...this.names.map((label, k) => ({ label, stroke: colour(COLOURS[k % COLOURS.length]), width: 1.5, points: { show: false } }))],
     }, this.data, this.holder);
   }
@@ -44,7 +49,7 @@ export class Charts {
   constructor(holder) {
     this.holder = holder;
     this.drawn = 0;
-    matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => { for (const each of this.all ?? []) each.build(); });
+    document.addEventListener("theme", () => { for (const each of this.all ?? []) each.build(); });
   }
   clear() { this.all = null; }
   add(status, feed) {

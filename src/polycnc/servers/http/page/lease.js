@@ -1,7 +1,7 @@
 // Who commands: this page alone, somebody else, or everybody.
 import { TEXTS } from "/texts.js";
 
-const KEEP_S = 10, RENEW_S = 5;
+const KEEP_S = 10, RENEW_S = 5, LATE_MS = 1000;
 
 function ownKey() {
   const kept = sessionStorage.getItem("key");
@@ -12,11 +12,12 @@ function ownKey() {
 }
 
 export class Lease {
-  constructor(ask) {
-    this.ask = ask;
+  constructor(link) {
+    this.link = link;
     this.key = ownKey();
     this.holder = null;
-    this.mine = sessionStorage.getItem("mine") === "yes";
+    this.held = sessionStorage.getItem("held") ?? ""; // the machine and the turn of the lease that was taken here
+    this.since = -Infinity;
     this.button = document.createElement("button");
     this.button.id = "lease";
     this.button.onclick = () => (this.mine ? this.release() : this.hold(true));
@@ -27,22 +28,26 @@ export class Lease {
   async hold(take) {
     this.asking = true;
     const body = JSON.stringify({ operator: this.operator, key: this.key, seconds: KEEP_S, take });
-    const answer = await this.ask("lease", { method: "POST", body });
+    const told = await this.link.json("lease", { method: "POST", body });
     this.asking = false;
-    this.own(Boolean(answer));
-    if (answer) this.show(await answer.json());
+    this.own(told ? this.named(told) : "");
+    this.since = performance.now();
+    if (told) this.show(told);
   }
   async release() {
-    this.own(false);
-    await this.ask("lease", { method: "DELETE" });
+    this.own("");
+    await this.link.ask("lease", { method: "DELETE" });
   }
-  own(mine) { this.mine = mine; sessionStorage.setItem("mine", mine ? "yes" : "no"); }
+  own(held) { this.held = held; sessionStorage.setItem("held", held); }
+  named(told) { return `${this.link.name}/${told.turn}`; }
+  get mine() { return Boolean(this.held); }
 
   // What the stream tells of the lease.
   show(told) {
-    if (this.asking) return;
+    const isMine = Boolean(told.holder) && this.named(told) === this.held;
+    if (this.asking || (!isMine && performance.now() - this.since < LATE_MS)) return; // told before it was taken here
     this.holder = told.holder;
-    if (told.holder !== this.operator) this.own(false);
+    if (!isMine) this.own("");
     if (this.mine && told.left_s < RENEW_S) this.hold(false);
     const other = Boolean(told.holder) && !this.mine;
     document.body.classList.toggle("watching", other);

@@ -33,7 +33,7 @@ export class Path {
     }));
     this.stage.controls.addEventListener("start", () => { this.touched = true; });
     this.stage.before.push(() => { for (const lines of [this.way, this.trail]) lines?.fit(this.stage); });
-    matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => this.dress());
+    document.addEventListener("theme", () => this.dress());
     this.dress();
   }
 
