@@ -10,7 +10,7 @@ from polycnc.stock._mesh import Mesh
 from polycnc.stock._mesh_files import MESH_FORMATS
 from polycnc.stock._profile import Arc, Line, Profile, make_profile
 from polycnc.stock._rows import Rows
-from polycnc.stock._solid import read_stl
+from polycnc.stock._solid import check_closed, read_stl
 from polycnc.stock._stock import Box, Stock
 from polycnc.stock._target import TOLERANCE_MM, Target, TargetComparison
 from polycnc.stock._tool import Tool, ToolKind
@@ -50,6 +50,7 @@ __all__ = [
     "TurningCutting",
     "Voxels",
     "around",
+    "check_closed",
     "check_fixtures",
     "fixtures_of",
     "grooving_tool",

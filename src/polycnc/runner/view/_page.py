@@ -102,13 +102,12 @@ def _stock(
     columns["stock_counts"] = film.counts
     columns["stock_cells"] = np.diff(film.cells, prepend=np.int32(0)).astype(np.int32)
     columns["stock_levels"] = film.levels
-    x, y, z = zero_mm
     return {
-        "first": [film.first_mm[0] + x, film.first_mm[1] + y],
-        "bottom": film.bottom_mm + z,
+        "kind": film.kind,
+        "first": [first + zero for first, zero in zip(film.first_mm, zero_mm, strict=True)],
         "cell": film.cell_mm,
-        "level": film.level_mm,
-        "size": [film.begin.shape[1], film.begin.shape[0]],
+        "level": film.level,
+        "size": list(film.begin.shape[::-1]),
     }
 
 

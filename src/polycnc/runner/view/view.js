@@ -2,16 +2,18 @@
 import { Group, Matrix4, Vector3 } from "three";
 import { Chart } from "./chart.js";
 import { Field } from "./field.js";
-import { save, stl, surface, threeMf } from "./files.js";
+import { save, stl, threeMf } from "./files.js";
 import { floor } from "./floor.js";
 import { after, clockText, units } from "./format.js";
 import { polyline } from "./lines.js";
 import { Listing } from "./listing.js";
 import { Path } from "./path.js";
 import { Record } from "./record.js";
+import { Solid } from "./solid.js";
 import { directions, Stage } from "./stage.js";
 import { begin, css, paletteColour, rgb, scaleColours, turnOver } from "./theme.js";
 import { toolShape } from "./tool_shape.js";
+import { Turned } from "./turned.js";
 
 const element = (id) => document.getElementById(id);
 const make = (tag, properties) => Object.assign(document.createElement(tag), properties);
@@ -20,7 +22,7 @@ export async function start(buffers) {
   const record = new Record(buffers), { about } = record, unit = units(about.inch), lathe = about.lathe;
   begin();
   const path = new Path(record);
-  const stage = new Stage(element("stage"), { flat: Boolean(lathe) });
+  const stage = new Stage(element("stage"), { flat: Boolean(lathe) && !about.stock });
   stage.reach = 2 * Math.max(...path.all.flat().map(Math.abs), 1) + 100;
   const say = (text) => { element("status").textContent = text; };
   const part = new Group(), carried = new Group(); // what turns with a table, and the tool
@@ -28,17 +30,17 @@ export async function start(buffers) {
   stage.scene.add(part, carried);
   part.add(path.rapids.mesh, path.cuts.mesh);
   let mirrored = null;
-  if (lathe) { // a full profile: the same below the axis of the spindle
+  if (lathe && !about.stock) { // a full profile: the same below the axis of the spindle
     mirrored = path.cuts.mesh.clone();
     mirrored.scale.z = -1;
     part.add(mirrored);
   }
-  const body = about.stock && bodyOf(record);
+  const body = about.stock && bodyOf(record, path);
   if (body) {
     part.add(body.mesh);
     stage.before.push(() => body.seenFrom(stage.camera.position, stage.controls.target));
     path.cuts.set("width", 1.4);
-    path.box = path.box.map(([low, high], i) => [Math.min(low, body.box[i][0]), i === 2 ? Math.max(body.box[2][1], Math.min(high, body.box[2][1] + 5)) : Math.max(high, body.box[i][1])]);
+    path.box = path.box.map(([low, high], i) => [Math.min(low, body.box[i][0]), i === 2 && !lathe ? Math.max(body.box[2][1], Math.min(high, body.box[2][1] + 5)) : Math.max(high, body.box[i][1])]);
   }
   const rest = path.rest(); // what could be read after an alarm
   if (rest) { rest.material.depthTest = !body; part.add(rest.mesh); path.box = path.box.map(([low, high], i) => [Math.min(low, rest.box[i][0]), Math.max(high, rest.box[i][1])]); }
@@ -78,7 +80,7 @@ export async function start(buffers) {
     shownTool = number;
     if (tool) carried.remove(tool);
     tool = toolShape(about.shapes[String(number)], 0.16 * longest, paletteColour(path.tools.indexOf(number)));
-    if (lathe) tool.rotation.set(0, 0, 0);
+    if (lathe && about.shapes[String(number)]?.outline) tool.rotation.y = Math.PI / 2; // what rotates lies along the axis
     carried.add(tool);
   }
 
@@ -347,13 +349,14 @@ export async function start(buffers) {
   for (const mark of about.other?.marks ?? []) list(make("button", { type: "button", textContent: `◇ ${mark.text}`, onclick: () => { if (mark.time_s !== null) goTo(mark.time_s); } }));
   if (!record.points) say("The program moves no axis.");
   element("stocks").hidden = element("sections").hidden = !body;
+  if (lathe) ["none", "across", "along"].forEach((name, i) => { element("section").options[i].text = name; });
   if (body && !body.changes) element("stock").value = "off"; // no tool is known: the path says more
   for (const each of element("save").options) each.hidden = each.disabled = !body && ["stl", "3mf"].includes(each.value);
   element("save").onchange = async () => { // the picture, or the body, as it is shown
     const how = element("save").value, name = `${element("title").textContent.replace(/\.[^.]*$/, "") || "part"}.${how}`;
     element("save").value = "";
     if (how === "png") { stage.render(); stage.canvas.toBlob((blob) => save(blob, name)); }
-    else if (how) save(await { stl, "3mf": threeMf }[how](surface(body.solid())), name);
+    else if (how) save(await { stl, "3mf": threeMf }[how](body.surface()), name);
     if (how) say(`${name}${how === "png" ? "" : ", mm from program zero"}`);
   };
   for (const id of ["stock", "section", "cut"]) element(id).oninput = () => drawBody();
@@ -398,10 +401,12 @@ export async function start(buffers) {
   document.documentElement.dataset.ready = "yes";
 }
 
-function bodyOf(record) {
+const BODIES = { field: Field, turned: Turned, solid: Solid };
+
+function bodyOf(record, path) {
   const { stock, zero } = record.about;
-  return new Field({
-    ...stock, place: [stock.first[0] - zero[0], stock.first[1] - zero[1], stock.bottom - zero[2]],
+  return new BODIES[stock.kind]({
+    ...stock, place: path.place(stock.first.map((first, i) => first - zero[i])),
     begin: record.stock_begin, ends: record.stock_s, counts: record.stock_counts, jumps: record.stock_cells, levels: record.stock_levels,
   });
 }
