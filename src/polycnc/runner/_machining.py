@@ -156,6 +156,7 @@ class MachiningCollector:
             blocks=blocks,
             removed_mm3=removed,
             by_tool_mm3=dict(tally.by_tool_mm3),
+            engagement=tally.engaged.all(),
             collisions=[
                 Collision(
                     each.kind, at.program, at.line, self._place(at), each.t_s, each.place, each.depth_mm

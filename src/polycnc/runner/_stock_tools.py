@@ -65,6 +65,7 @@ def _whole(tool: Tool | None, config: ToolConfig) -> Tool | None:
         shank=tuple((height, 0.5 * diameter) for height, diameter in config.shank),
         holder=tuple((height, 0.5 * diameter) for height, diameter in config.holder),
         left_hand=config.left_hand or tool.left_hand,
+        teeth=config.teeth or tool.teeth,
     )
 
 

@@ -27,6 +27,7 @@ _UNLIKE = re.compile(
     r"|\bradius mill|corner round|\bround[ -]?over|\bform (?:mill|tool|cutter)|\bogee\b|\bcove\b",
     re.IGNORECASE,
 )
+_TEETH = re.compile(r"(?<![\d.])(\d{1,2})[ -]?(?:flutes?|fl|teeth|tooth)\b(?! *len)", re.IGNORECASE)
 _LEFT_HAND = re.compile(r"\bleft[ -]?hand(?:ed)?\b|\bLH\b", re.IGNORECASE)
 _POINT_DEG = 118.0
 _CHAMFER_DEG = 90.0
@@ -73,7 +74,10 @@ def tool_of_remark(remark: str, *, inch: bool = False) -> Tool | None:
         tool = _tool(kind, size, corner, angle)
     except UsageError:
         return None
-    return replace(tool, left_hand=True) if tool is not None and _LEFT_HAND.search(remark) else tool
+    if tool is None:
+        return None
+    teeth = int(found[1]) if (found := _TEETH.search(remark)) else 0
+    return replace(tool, left_hand=_LEFT_HAND.search(remark) is not None, teeth=teeth)
 
 
 def _tool(kind: ToolKind, size: float, corner: float, angle: float) -> Tool | None:

@@ -17,6 +17,7 @@ from polycnc.runner._outcome import RunOutcome, counted, time_text
 from polycnc.runner._rotation import turning_axes
 from polycnc.runner.view._film import Film, film_of
 from polycnc.runner.view._listing import Listing
+from polycnc.runner.view._load import loads
 from polycnc.runner.view._motion import DERIVATIVES
 from polycnc.runner.view._part_frame import with_part_frame
 from polycnc.runner.view._picture import Axes, columns_of, kinematics, places, tool_shapes, zero_of_work
@@ -87,6 +88,10 @@ def page(
     }
     if result.machined is not None:
         about["stock"] = _stock(film_of(result.machined), result.machined.zero_mm, columns)
+        found, about["load_s"] = loads(
+            result.machined.engagement, float(track.t_s[-1]) if len(track.t_s) else 0.0
+        )
+        columns |= {f"load_{name}": each for name, each in found.items()}
     blob, about["columns"] = _packed(columns)
     shell = Page(_own("page.html"), _own("page.css"), "view.js", _modules(), "polycnc view")
     title = result.program.encode("utf-8", "replace").decode()

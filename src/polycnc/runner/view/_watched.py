@@ -104,7 +104,8 @@ class _WatchedField:
         high, wide = y.stop - y.start, x.stop - x.start
         short = ((0, high * n - part.shape[0]), (0, wide * n - part.shape[1]))
         cells = np.pad(part, short, mode="edge").reshape(high, n, wide, n)
-        return np.rint((cells.mean(axis=(1, 3)) - grid.bottom) / self.level).astype(np.uint16)
+        found: Levels = np.rint((cells.mean(axis=(1, 3)) - grid.bottom) / self.level).astype(np.uint16)
+        return found
 
 
 class _WatchedBar:
@@ -131,7 +132,8 @@ class _WatchedBar:
         radii, n = np.stack((self._bar.outer, self._bar.inner)), self._several
         count = -(-radii.shape[1] // n)
         cells = np.pad(radii, ((0, 0), (0, count * n - radii.shape[1])), mode="edge").reshape(2, count, n)
-        return np.rint(cells.mean(axis=2) / self.level).astype(np.uint16)
+        found: Levels = np.rint(cells.mean(axis=2) / self.level).astype(np.uint16)
+        return found
 
 
 class _WatchedSolid:
@@ -182,7 +184,8 @@ class _WatchedSolid:
         counts = [-(-size // n) for size in cells.shape]
         short = [(0, count * n - size) for count, size in zip(counts, cells.shape, strict=True)]
         blocks = np.pad(cells, short).reshape(counts[0], n, counts[1], n, counts[2], n)
-        return blocks.sum(axis=(1, 3, 5), dtype=np.int64)
+        found: npt.NDArray[np.int64] = blocks.sum(axis=(1, 3, 5), dtype=np.int64)
+        return found
 
     def _levels(self, cells: npt.NDArray[np.int64]) -> Levels:
         shares = self._left.ravel()[cells] / self._all.ravel()[cells]

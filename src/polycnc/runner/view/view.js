@@ -85,6 +85,9 @@ export async function start(buffers) {
   }
 
   // ---------------------------------------------------------------- colours
+  const LOADS = { rate: "removal", axial: "cut depth", radial: "cut width", chip: "chip" }, loaded = Object.keys(record.loads);
+  const loadText = (name, value) => (name === "rate" ? unit.rate(value) : unit.length(value));
+  loaded.forEach((name) => element("colour").add(new Option(LOADS[name], name)));
   const chip = (colour, text, name = "") => {
     const mark = make("i", { className: name }), entry = make("div", {});
     if (colour) mark.style.background = colour;
@@ -94,10 +97,10 @@ export async function start(buffers) {
   function drawLegend() {
     const legend = element("legend"), how = element("colour").value;
     legend.replaceChildren();
-    if (how === "speed" || how === "depth" || how === "power") {
+    if (["speed", "depth", "power"].includes(how) || record.loads[how]) {
       const bar = make("div", { className: "scale" }), ends = make("div", { className: "ends" }), [low, high] = path.depths;
       bar.style.background = `linear-gradient(to right, ${scaleColours().join(",")})`;
-      const texts = how === "power" ? ["0", `S${+path.topPower.toFixed(1)}`] : how === "speed" ? ["0", `${path.usualFeed < 0.99 * path.topFeed ? "≥ " : ""}${unit.feed(path.usualFeed)}`] : [unit.length(low), unit.length(high)];
+      const texts = record.loads[how] ? ["0", loadText(how, record.loads[how].top)] : how === "power" ? ["0", `S${+path.topPower.toFixed(1)}`] : how === "speed" ? ["0", `${path.usualFeed < 0.99 * path.topFeed ? "≥ " : ""}${unit.feed(path.usualFeed)}`] : [unit.length(low), unit.length(high)];
       ends.append(...texts.map((textContent) => make("span", { textContent })));
       legend.append(bar, ends);
     } else if (how === "tool") path.tools.forEach((number, i) => legend.append(chip(paletteColour(i), `T${number}`)));
@@ -111,10 +114,10 @@ export async function start(buffers) {
     if (about.other) legend.append(chip(paletteColour(0), about.other.own), chip(css("--other"), about.other.name));
   }
   function recolour() {
-    const how = element("colour").value, of = path.colouring(how);
+    const how = element("colour").value;
     path.paint(how);
     rest?.paint(() => rgb(css("--rest"))); rest?.paper(css("--paper"));
-    if (body) body.paint((t) => of(Math.min(after(record.t_s, t - 1e-6), record.points - 1)));
+    if (body) body.paint(path.colouringAt(how));
     drawLegend(); stage.draw();
   }
   function drawBody() { // as cut, or before, after, off; and the section
@@ -134,13 +137,17 @@ export async function start(buffers) {
   const charts = [{ name: "path speed", unit: `${unit.name}/min`, y: () => record.feed.map((f) => f * unit.factor), top: path.topRapid > 2 * path.topFeed && path.cuts.count ? 1.15 * path.topFeed * unit.factor : null, zero: true }];
   for (const { name, i, unit: of } of linearAxes) charts.push({ name: `position ${name}`, unit: of === "deg" ? "°" : unit.name, y: () => record.position.slice(i * record.points, (i + 1) * record.points).map((v) => (of === "deg" ? v : v * unit.factor)) });
   if (record.motion_low) about.derivatives.forEach((what, d) => { for (const { name, i, unit: of } of linearAxes) charts.push({ name: `${what} ${name}`, unit: `${of === "deg" ? "°" : "mm"}/s${["", "²", "³"][d]}`, motion: d * record.axes.length + i }); });
+  for (const name of loaded) charts.push({ name: LOADS[name], unit: name === "rate" ? (about.inch ? "in³/min" : "cm³/min") : unit.name, load: record.loads[name] });
   const chart = new Chart(element("chart"), {
     onTime: (t) => goTo(t),
     colours: () => ({ line: paletteColour(0), band: `${paletteColour(0)}44`, soft: css("--soft"), grid: css("--line"), now: css("--accent") }),
   });
   function drawChart() {
     const each = charts[element("shown").value];
-    if (each.motion === undefined) chart.show({ x: record.t_s, y: each.y(), end: record.end_s || 1, unit: each.unit, top: each.top ?? null, zero: each.zero });
+    if (each.load) {
+      const { values, stretch_s } = each.load, factor = each.load === record.loads.rate ? 60 * (about.inch ? 25.4 ** -3 : 1e-3) : unit.factor;
+      chart.show({ x: Array.from(values, (_, n) => (n + 0.5) * stretch_s), y: Array.from(values, (value) => value * factor), end: record.end_s || 1, unit: each.unit, zero: true });
+    } else if (each.motion === undefined) chart.show({ x: record.t_s, y: each.y(), end: record.end_s || 1, unit: each.unit, top: each.top ?? null, zero: each.zero });
     else {
       const n = record.motion_low.length / (about.derivatives.length * record.axes.length), x = [], y = [];
       for (let k = 0; k < n; k++) for (const side of [record.motion_low, record.motion_high]) { x.push(Math.min((k + (side === record.motion_low ? 0.25 : 0.75)) * about.stretch_s, record.end_s)); y.push(side[each.motion * n + k]); }
@@ -156,7 +163,7 @@ export async function start(buffers) {
     onRow: (row) => { say(""); goToRow(row); },
   });
   const cells = {};
-  for (const name of ["time", "speed", "tool", "line", ...record.axes.map((axis) => axis.name), ...(lathe ? ["⌀"] : [])]) {
+  for (const name of ["time", "speed", "tool", "line", ...record.axes.map((axis) => axis.name), ...(lathe ? ["⌀"] : []), ...loaded.map((each) => LOADS[each])]) {
     const cell = make("dd", {});
     cell.dataset.of = name;
     element("readout").append(make("dt", { textContent: name }), cell);
@@ -179,6 +186,7 @@ export async function start(buffers) {
     if (!record.points) return;
     const here = record.at(now), execution = record.executionAt(now), number = record.toolOf(execution), row = record.rowOf(execution);
     readout(here, execution);
+    for (const name of loaded) { const value = record.loads[name].at(now - 1e-6); cells[LOADS[name]].textContent = value > 0 ? loadText(name, value) : "–"; }
     cells.speed.textContent = unit.feed(here.feed);
     cells.tool.textContent = record.executions ? `T${number}` : "";
     cells.line.textContent = row >= 0 ? record.line[row] : "";
