@@ -15,7 +15,7 @@ from polycnc.nc import CONTEXT_SHIFT, BlockRecords
 from polycnc.runner._blocks import BlockTable, ExecutedBlock
 from polycnc.runner._machined import Collision, IdleFeed, Machined
 from polycnc.runner._rotation import tip_and_axis, turning_axes
-from polycnc.runner._stock_tools import tools_of
+from polycnc.runner._stock_tools import said_form, tools_of
 from polycnc.runner._turning_tools import turning_tools_of
 from polycnc.stock import (
     Course,
@@ -63,6 +63,7 @@ class MachiningCollector:
         self._course = Course()
         self._zero: list[float] | None = None
         self.texts = self._table.texts
+        self._said = ""  # about the form
 
     def add(self, rows: Floats, tags: npt.NDArray[np.int64], records: BlockRecords) -> None:
         """Take a piece of the record."""
@@ -117,6 +118,7 @@ class MachiningCollector:
         """
         course, (x, y, z) = self._course.rows(), self._zero_mm()
         course = replace(course, tip=course.tip - (x, y, z))
+        form, self._said = said_form(form, self.texts)
         if self._lathe:
             given = turning_tools_of(self._config, self.texts) if tools is None else tools
             turned = TurningCutting(form.turned_body(course), given)
@@ -172,7 +174,7 @@ class MachiningCollector:
             idle_s=tally.idle_s,
             comparison=None,
             messages=[
-                f"stock: {stock}, {stock.cell_mm:g} mm a cell",
+                f"stock: {stock}, {stock.cell_mm:g} mm a cell{self._said}",
                 *map(_cuts_nothing, sorted(tally.unknown_tools)),
             ],
             form=form,

@@ -9,9 +9,10 @@ from dataclasses import replace
 from polycnc.errors import UsageError
 from polycnc.machine import MachineConfig, ToolConfig
 from polycnc.nc import ProgramText
-from polycnc.stock import Tool, ToolKind, tool_number, tool_of_remark
+from polycnc.stock import Form, Tool, ToolKind, stock_of_remarks, tool_number, tool_of_remark
 
 _REMARK_OR_TOOL = re.compile(rb"\(([^)\r\n]*)\)|;([^\r\n]*)|[Tt][ \t]*0*([0-9]+)")
+_REMARK = re.compile(rb"\(([^)\r\n]*)\)|;([^\r\n]*)")
 _INCH = re.compile(rb"[Gg]0*20(?![0-9.])")
 
 
@@ -67,6 +68,18 @@ def _whole(tool: Tool | None, config: ToolConfig) -> Tool | None:
         left_hand=config.left_hand or tool.left_hand,
         teeth=config.teeth or tool.teeth,
     )
+
+
+def said_form(form: Form, texts: Mapping[str, ProgramText]) -> tuple[Form, str]:
+    """Return the body that the remarks of programs say in place of `auto`, and a word about that for a message."""
+    if form.text == "auto":
+        for text in texts.values():
+            remarks = (found[1] or found[2] for found in _REMARK.finditer(text.content))
+            inch = _INCH.search(text.content) is not None
+            said = stock_of_remarks((each.decode("utf-8", "replace") for each in remarks if each), inch=inch)
+            if said is not None:
+                return replace(form, text=said), f", as '{text.name}' says"
+    return form, ""
 
 
 def remarks_of_tools(text: ProgramText) -> Iterator[tuple[int, str]]:

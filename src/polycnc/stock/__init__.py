@@ -13,6 +13,7 @@ from polycnc.stock._profile import Arc, Line, Profile, make_profile
 from polycnc.stock._rows import Rows
 from polycnc.stock._solid import check_closed, read_stl
 from polycnc.stock._stock import Box, Stock
+from polycnc.stock._stock_text import stock_of_remarks
 from polycnc.stock._tally import Tally
 from polycnc.stock._target import TOLERANCE_MM, Target, TargetComparison
 from polycnc.stock._tool import Tool, ToolKind
@@ -59,6 +60,7 @@ __all__ = [
     "iso_insert",
     "make_profile",
     "read_stl",
+    "stock_of_remarks",
     "threading_tool",
     "tool_number",
     "tool_of_remark",

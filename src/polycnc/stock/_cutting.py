@@ -122,7 +122,7 @@ class Cutting:
     def _sweep(self, ways: Ways) -> None:
         outlines = self._outlines.get(ways.number)
         if outlines is None:
-            self.tally.unknown_tools.add(ways.number)
+            self.tally.miss(ways)
             return
         none, grid, least = outlines.none, self.stock.grid, LEAST_DEPTH_SHARE * self.stock.cell_mm
         for fixture in self._fixtures:

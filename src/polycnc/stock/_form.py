@@ -24,7 +24,8 @@ MARGIN_MM = 1.0
 _FINER_TURNED = 5
 CELLS_ACROSS = 1000
 """How many cells there are along the longer side where no resolution is given."""
-_FORMS = "auto, box=X0,Y0,Z0,X1,Y1,Z1, cylinder=D,Z0,Z1 or the name of an STL file"
+_FORMS = "auto, box=X0,Y0,Z0,X1,Y1,Z1, cylinder=D,Z0,Z1, the name of an STL file, x-turned=FILE.stl or y-turned=FILE.stl"
+_TURNS = ("x", "y")
 
 
 class NoStockError(UsageError):
@@ -49,13 +50,19 @@ class Form:
         kind, _, numbers = self.text.partition("=")
         if kind in ("box", "cylinder"):
             numbers_of(self.text, numbers, 6 if kind == "box" else 3)
-        elif self.text != "auto" and not self.text.lower().endswith(".stl"):
+        elif self.text != "auto" and not _file_of(self.text)[0].lower().endswith(".stl"):
             raise UsageError(f"'{self.text}' is no stock", hint=f"Write {_FORMS}.")
         if self.cell_mm is not None:
             check_cell(self.cell_mm)
         check_tolerance(self.tolerance_mm)
         if self.target is not None and not self.target.lower().endswith(".stl"):
             raise UsageError(f"'{self.target}' is no target", hint="Name an STL file.")
+
+    @property
+    def file(self) -> Path | None:
+        """The file that it is read from, None if it is another body."""
+        name = _file_of(self.text)[0]
+        return Path(name) if name.lower().endswith(".stl") else None
 
     def body(self, course: Rows, tools: Mapping[int, Tool]) -> Stock:
         """Return the body for a course of the tool.
@@ -73,7 +80,8 @@ class Form:
         elif self.text == "auto":
             box = around(course, tools)
         else:
-            return solid_stock(Path(self.text), self.cell_mm, _cell_mm)
+            name, turned = _file_of(self.text)
+            return solid_stock(Path(name), self.cell_mm, _cell_mm, turned)
         return Stock(
             box, self.cell_mm or _cell_mm(max(b - a for a, b in zip(box.low[:2], box.high, strict=False)))
         )
@@ -127,6 +135,13 @@ class Form:
             UsageError: no such file, or a surface that is none.
         """
         return None if self.target is None else Target(Path(self.target), stock, self.tolerance_mm)
+
+
+def _file_of(text: str) -> tuple[str, str]:
+    """Return the name of a file, and the axis that its body is turned over about: `x`, `y` or none."""
+    kind, _, name = text.partition("=")
+    axis, _, turned = kind.lower().partition("-")
+    return (name, axis) if axis in _TURNS and turned == "turned" and name else (text, "")
 
 
 def _cell_mm(size_mm: float) -> float:

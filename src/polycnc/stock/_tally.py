@@ -27,6 +27,11 @@ class Tally:
         self.idle_s = 0.0
         self.engaged = EngagementLog()
 
+    def miss(self, ways: Ways) -> None:
+        """Keep the number of a tool whose shape is not known, if it is fed along the ways."""
+        if not ways.rapid and np.any(ways.places[1:] != ways.places[:-1]):
+            self.unknown_tools.add(ways.number)
+
     def count(self, ways: Ways, figures: Floats, tool: Tool | Insert) -> None:
         """Count what each way has removed."""
         self.engaged.add(ways, figures, tool)

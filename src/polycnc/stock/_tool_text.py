@@ -10,16 +10,22 @@ from polycnc.errors import UsageError
 from polycnc.stock._tool import Tool, ToolKind
 
 MM_PER_INCH = 25.4
-_NUMBERED = re.compile(r"\bT(?:OOL)?\s*[#:]?\s*0*(\d{1,9})\b", re.IGNORECASE)
+_NUMBERED = re.compile(
+    r"\bT(?:OOL(?:\s+-)?)?\s*[#:]?\s*0*(\d{1,9})\b(?!/)|^\s*0*(\d{1,9}) = (?=[A-Za-z])", re.IGNORECASE
+)
 _NUMBER = r"(\d+(?:\.\d*)?(?![\d.]*e[-+]?\d)|\.\d+)"
 _DIAMETER = re.compile(rf"\bD(?:IA(?:METER)?)?\s*[=:]\s*{_NUMBER}", re.IGNORECASE)
+_OF_NAMED = re.compile(
+    rf"\bDIA\.?\s+(?:-\s+)?{_NUMBER}|(?<![\d.,/])(\d+)/(2|4|8|16|32|64)(?![\d./-])", re.IGNORECASE
+)
+_STATEMENT = re.compile(r"^\s*TOOL/(MILL|DRILL|CHAMFER)\s*,(.*)", re.IGNORECASE)
 _CORNER = re.compile(rf"\bCR\s*[=:]\s*{_NUMBER}", re.IGNORECASE)
 _ANGLE = re.compile(
     rf"\b(?:TAPER|TIP|ANGLE)\s*[=:]?\s*{_NUMBER}\s*(?:DEG|°)|{_NUMBER}\s*(?:DEG\w*|°)", re.IGNORECASE
 )
 _SIZE = re.compile(
     r"(?<![\d.,/])(?:(?P<whole>\d+)[ -]+)?(?:(?P<over>\d+)/(?P<under>\d+)|(?P<size>\d+(?:[.,]\d*)?|\.\d+))"
-    r"\s*-?(?P<unit>mm|inch|in|\")(?![a-z])",
+    r"\s*-?(?P<unit>mm|inch(?:es)?|in|\")(?![a-z])",
     re.IGNORECASE,
 )
 _UNLIKE = re.compile(
@@ -32,6 +38,7 @@ _LEFT_HAND = re.compile(r"\bleft[ -]?hand(?:ed)?\b|\bLH\b", re.IGNORECASE)
 _POINT_DEG = 118.0
 _CHAMFER_DEG = 90.0
 _MOST_FLANK_DEG = 60.0
+_ALL_ROUND = 0.49  # of the diameter: the corner of a ball, rounded
 _KINDS = (
     (re.compile(r"\bball|\bspherical", re.IGNORECASE), ToolKind.BALL),
     (re.compile(r"\bbull|\bcorner radius|\btoroid", re.IGNORECASE), ToolKind.BULL),
@@ -47,7 +54,7 @@ _KINDS = (
 def tool_number(remark: str) -> int | None:
     """Return the number of the tool that a remark is about, None if it names none."""
     found = _NUMBERED.search(remark)
-    return int(found[1]) if found else None
+    return int(found[1] or found[2]) if found else None
 
 
 def tool_of_remark(remark: str, *, inch: bool = False) -> Tool | None:
@@ -59,9 +66,14 @@ def tool_of_remark(remark: str, *, inch: bool = False) -> Tool | None:
     """
     if _UNLIKE.search(remark):
         return None
+    if (stated := _STATEMENT.match(remark)) is not None:
+        return _of_statement(stated[1].upper(), stated[2], MM_PER_INCH if inch else 1.0)
     kind = next((kind for pattern, kind in _KINDS if pattern.search(remark)), None)
     size = _diameter_mm(remark, inch)
-    if size is None or (kind is None and not _DIAMETER.search(remark)):
+    is_named = (
+        tool_number(remark) is not None and (found := _OF_NAMED.search(remark)) is not None and found[1]
+    )
+    if size is None or (kind is None and not is_named and not _DIAMETER.search(remark)):
         return None
     corner = float(found[1]) * (MM_PER_INCH if inch else 1.0) if (found := _CORNER.search(remark)) else 0.0
     angle = float(found[1] or found[2]) if (found := _ANGLE.search(remark)) else 0.0
@@ -94,13 +106,38 @@ def _tool(kind: ToolKind, size: float, corner: float, angle: float) -> Tool | No
             return Tool(kind, size)
 
 
+def _of_statement(kind: str, numbers: str, unit_mm: float) -> Tool | None:
+    """Return the tool of a statement that viewers of programs read: `TOOL/MILL,diameter,corner,height,flank`."""
+    try:
+        found = [float(each) for each in numbers.split(",")]
+        size, second, height, flank = (*found, 0.0, 0.0, 0.0)[:4]
+        size, height = size * unit_mm, height * unit_mm
+        if kind != "MILL":
+            return Tool(ToolKind[kind], size, angle_deg=second)
+        if flank > 0.0:  # the diameter is that of the end
+            wide = size + 2.0 * height * math.tan(math.radians(flank))
+            return Tool(ToolKind.TAPER, wide, angle_deg=flank, tip_mm=size)
+        corner = second * unit_mm
+        if corner >= _ALL_ROUND * size:
+            return Tool(ToolKind.BALL, size)
+        return Tool(ToolKind.BULL, size, corner_mm=corner) if corner > 0.0 else Tool(ToolKind.FLAT, size)
+    except (ValueError, UsageError):
+        return None
+
+
 def _diameter_mm(remark: str, inch: bool) -> float | None:
     if found := _DIAMETER.search(remark):
         return float(found[1]) * (MM_PER_INCH if inch else 1.0)
-    if found := _SIZE.search(_NUMBERED.sub("", remark)):
+    rest = _NUMBERED.sub("", remark)
+    named = _OF_NAMED.search(rest) if rest != remark else None
+    if named is not None and named[1]:
+        return float(named[1]) * (MM_PER_INCH if inch else 1.0)
+    if found := _SIZE.search(rest):
         if found["over"]:
             size = float(found["whole"] or 0.0) + float(found["over"]) / (float(found["under"]) or math.inf)
         else:
             size = float(found["size"].replace(",", "."))
         return size * (1.0 if found["unit"].lower() == "mm" else MM_PER_INCH)
+    if named is not None:  # fractions without a unit are inches
+        return float(named[2]) / float(named[3]) * MM_PER_INCH
     return None

@@ -44,7 +44,7 @@ class TurnedCutting:
         for ways in self._ways.of(rows):
             tool = self._tools.get(ways.number)
             if tool is None:
-                self.tally.unknown_tools.add(ways.number)
+                self.tally.miss(ways)
             else:
                 self._sweep(ways, tool)
 

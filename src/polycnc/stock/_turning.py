@@ -45,7 +45,7 @@ class TurningCutting:
         for ways in self._ways.of(rows):
             tool = self._tools.get(ways.number)
             if tool is None:
-                self.tally.unknown_tools.add(ways.number)
+                self.tally.miss(ways)
             elif isinstance(tool, Tool):
                 self._drill(ways, tool)
             else:
