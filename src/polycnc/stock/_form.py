@@ -24,7 +24,7 @@ MARGIN_MM = 1.0
 _FINER_TURNED = 5
 CELLS_ACROSS = 1000
 """How many cells there are along the longer side where no resolution is given."""
-_FORMS = "auto, box=X0,Y0,Z0,X1,Y1,Z1, cylinder=D,Z0,Z1, the name of an STL file, x-turned=FILE.stl or y-turned=FILE.stl"
+_FORMS = "auto, box=X0,Y0,Z0,X1,Y1,Z1, cylinder=D,Z0,Z1 or the name of an STL file"
 _TURNS = ("x", "y")
 
 

@@ -316,8 +316,14 @@ def test_a_body_is_turned_over_where_it_lies(tmp_path: Path) -> None:
         over = Form(f"{axis}-turned={path}", 0.5).body(course, {})
         assert (over.box.low, over.box.high) == (upright.box.low, upright.box.high)
         assert over.heights == pytest.approx(9.0)  # its flat side; below it counts as full
-    with pytest.raises(UsageError, match="no stock"):
-        Form(f"z-turned={path}")
+        turned = np.array(corners, np.float64)
+        for i in (1 if axis == "x" else 0, 2):
+            turned[:, i] = (30.0, 20.0, 9.0)[i] - turned[:, i]
+        Mesh(turned, np.array(faces)).write(tmp_path / "over.stl")
+        back = Form(f"{axis}-turned={tmp_path / 'over.stl'}", 0.5).body(course, {})
+        assert back.heights == pytest.approx(upright.heights, abs=1e-5)
+    with pytest.raises(UsageError, match="cannot read 'z-turned"):
+        Form("z-turned=part.stl").body(course, {})
 
 
 def test_a_remark_says_what_auto_is() -> None:
