@@ -34,33 +34,36 @@ def stock_of_remarks(remarks: Iterable[str], *, inch: bool = False) -> str | Non
     Read are `STOCK box=...`, `STOCK cylinder=...` (mm), `STOCK/BLOCK` with six numbers, `stockMin` with `stockMax`, and
     a size with both origins as Vectric writes it. With `inch` numbers without a unit are inches.
     """
-    unit = _MM_PER_INCH if inch else 1.0
-    corners: dict[str, list[float]] = {}
-    size: list[float] | None = None
-    top: bool | None = None
-    share: tuple[float, float] | None = None
-    shift = [0.0, 0.0]
-    for remark in remarks:
+    said, unit = list(remarks), _MM_PER_INCH if inch else 1.0
+    for remark in said:
         if found := _OWN.match(remark):
             return re.sub(r"\s+", "", found[1]).lower()
         if (found := _BLOCK.match(remark)) and (body := _block(found[1], unit)):
             return body
-        if found := _CORNER.match(remark):
-            of = _MM_PER_INCH if found[3].lower() == "in" else 1.0
-            corners[found[1].lower()] = [of * float(found[i]) for i in (2, 4, 5)]
-        elif found := _SIZE.match(remark):
-            size = [unit * float(each) for each in found.groups()]
-        elif found := _TOP.match(remark):
-            top = found[1].lower() == "material surface"
-        elif found := _ORIGIN.match(remark):
-            share = _SHARES.get(found[1].lower())
-        elif found := _SHIFT.match(remark):
-            shift = [unit * float(each) for each in found.groups()]
-    if len(corners) == 2:
-        return _box(corners["min"], corners["max"])
-    if size is None or top is None or share is None:
+    return _corners(said) or _placed(said, unit)
+
+
+def _corners(said: list[str]) -> str | None:
+    """Return the body between two corners."""
+    corners = {}
+    for found in filter(None, map(_CORNER.match, said)):
+        of = _MM_PER_INCH if found[3].lower() == "in" else 1.0
+        corners[found[1].lower()] = [of * float(found[i]) for i in (2, 4, 5)]
+    return _box(corners["min"], corners["max"]) if len(corners) == 2 else None
+
+
+def _placed(said: list[str], unit: float) -> str | None:
+    """Return the body of a size, whose origin is at its surface or below and at a corner or in the middle."""
+    sizes, tops, origins, shifts = (
+        next(filter(None, map(each.match, said)), None) for each in (_SIZE, _TOP, _ORIGIN, _SHIFT)
+    )
+    share = None if origins is None else _SHARES.get(origins[1].lower())
+    if sizes is None or tops is None or share is None:
         return None
-    low = [shift[i] - share[i] * size[i] for i in range(2)] + [-size[2] if top else 0.0]
+    size = [unit * float(each) for each in sizes.groups()]
+    shift = [0.0, 0.0] if shifts is None else [unit * float(each) for each in shifts.groups()]
+    low = [shift[i] - share[i] * size[i] for i in range(2)]
+    low.append(-size[2] if tops[1].lower() == "material surface" else 0.0)
     return _box(low, [a + b for a, b in zip(low, size, strict=True)])
 
 

@@ -68,6 +68,18 @@ def tool_of_remark(remark: str, *, inch: bool = False) -> Tool | None:
         return None
     if (stated := _STATEMENT.match(remark)) is not None:
         return _of_statement(stated[1].upper(), stated[2], MM_PER_INCH if inch else 1.0)
+    try:
+        tool = _of_words(remark, inch)
+    except UsageError:
+        return None
+    if tool is None:
+        return None
+    teeth = int(found[1]) if (found := _TEETH.search(remark)) else 0
+    return replace(tool, left_hand=_LEFT_HAND.search(remark) is not None, teeth=teeth)
+
+
+def _of_words(remark: str, inch: bool) -> Tool | None:
+    """Return the tool of a size beside a word for a kind, of `D=`, or of `DIA` where the remark names the tool."""
     kind = next((kind for pattern, kind in _KINDS if pattern.search(remark)), None)
     size = _diameter_mm(remark, inch)
     is_named = (
@@ -82,14 +94,7 @@ def tool_of_remark(remark: str, *, inch: bool = False) -> Tool | None:
         angle *= 2.0  # chamfering tools are named by their flank, V-bits and countersinks by their point
     if kind is ToolKind.FLAT and corner > 0.0:
         kind = ToolKind.BALL if corner >= 0.5 * size else ToolKind.BULL
-    try:
-        tool = _tool(kind, size, corner, angle)
-    except UsageError:
-        return None
-    if tool is None:
-        return None
-    teeth = int(found[1]) if (found := _TEETH.search(remark)) else 0
-    return replace(tool, left_hand=_LEFT_HAND.search(remark) is not None, teeth=teeth)
+    return _tool(kind, size, corner, angle)
 
 
 def _tool(kind: ToolKind, size: float, corner: float, angle: float) -> Tool | None:
