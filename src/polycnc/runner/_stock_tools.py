@@ -11,7 +11,9 @@ from polycnc.machine import MachineConfig, ToolConfig
 from polycnc.nc import ProgramText
 from polycnc.stock import Form, Tool, ToolKind, stock_of_remarks, tool_number, tool_of_remark
 
-_REMARK_OR_TOOL = re.compile(rb"\(([^)\r\n]*)\)|;([^\r\n]*)|[Tt][ \t]*0*([0-9]+)")
+_REMARK_OR_TOOL = re.compile(  # an M6 counts for the T before it
+    rb"\(([^)\r\n]*)\)|;([^\r\n]*)|[Tt][ \t]*0*([0-9]+)|[Mm]0*(6)(?![0-9.])(?![^\r\n(;]*[Tt][ \t]*[0-9])"
+)
 _REMARK = re.compile(rb"\(([^)\r\n]*)\)|;([^\r\n]*)")
 _INCH = re.compile(rb"[Gg]0*20(?![0-9.])")
 
@@ -83,15 +85,33 @@ def said_form(form: Form, texts: Mapping[str, ProgramText]) -> tuple[Form, str]:
 
 
 def remarks_of_tools(text: ProgramText) -> Iterator[tuple[int, str]]:
-    """Yield numbers of tools with remarks: those that name them, and the last one before a T word."""
-    last = ""
+    """Yield numbers of tools with remarks: those that name them, the last one before a T word, or before its M6."""
+    last, number = "", None
     for found in _REMARK_OR_TOOL.finditer(text.content):
-        if found[3] is not None:
-            if last:
-                yield int(found[3][:9]), last
+        if found[3] is not None or found[4] is not None:
+            number = int(found[3][:9]) if found[3] is not None else number
+            if last and number is not None:
+                yield number, last
+            last = ""
             continue
         remark = (found[1] or found[2] or b"").decode("utf-8", "replace")
         named = tool_number(remark)
         if named is not None:
             yield named, remark
         last = "" if named is not None else remark
+
+
+def hand_tool(texts: Mapping[str, ProgramText], tools: Mapping[int, Tool]) -> Tool | None:
+    """Return the tool of programs that never change it: by their one T word, else the only one in remarks."""
+    numbers, described = set[int](), list[Tool]()
+    for text in texts.values():
+        inch = _INCH.search(text.content) is not None
+        for found in _REMARK_OR_TOOL.finditer(text.content):
+            if found[3] is not None:
+                numbers.add(int(found[3][:9]))
+            remark = (found[1] or found[2] or b"").decode("utf-8", "replace")
+            if (tool := tool_of_remark(remark, inch=inch)) is not None and tool not in described:
+                described.append(tool)
+    if numbers:
+        return tools.get(numbers.pop()) if len(numbers) == 1 else None
+    return described[0] if len(described) == 1 else None

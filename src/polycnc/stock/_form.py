@@ -11,6 +11,8 @@ from pathlib import Path
 import numpy as np
 
 from polycnc.errors import UsageError
+from polycnc.stock._contacts import ContactKind
+from polycnc.stock._cutting import Cutting
 from polycnc.stock._rows import Rows
 from polycnc.stock._solid import solid_stock
 from polycnc.stock._stock import Box, Stock, check_cell
@@ -22,6 +24,7 @@ from polycnc.stock._voxels import Voxels
 MARGIN_MM = 1.0
 """Of an `auto` body around what is cut."""
 _FINER_TURNED = 5
+_COARSE_CELLS = 200
 CELLS_ACROSS = 1000
 """How many cells there are along the longer side where no resolution is given."""
 _FORMS = "auto, box=X0,Y0,Z0,X1,Y1,Z1, cylinder=D,Z0,Z1 or the name of an STL file"
@@ -172,8 +175,8 @@ def numbers_of(text: str, numbers: str, count: int, forms: str = _FORMS) -> list
 def around(course: Rows, tools: Mapping[int, Tool]) -> Box:
     """Return the box that holds what is cut, with a margin beside and below it.
 
-    Its top is program zero where the tool cuts below that, else the highest cut across. Where the tool gets down at
-    rapid, close to a side, the box ends beside it.
+    Its top is program zero where the tool cuts below that, else the highest cut across. Where the tool gets down
+    into it at rapid, close to a side, the box ends beside it.
 
     Raises:
         UsageError: nothing is cut.
@@ -196,12 +199,23 @@ def around(course: Rows, tools: Mapping[int, Tool]) -> Box:
     across = cuts & np.any(begin[:, :2] != end[:, :2], axis=1)
     lowest = float(places[:, 2].min())
     top = 0.0 if lowest < 0.0 else float(end[across if across.any() else cuts][:, 2].max())
-    below = lowest - MARGIN_MM
-    low, high = [*low_xy.tolist(), below], [*high_xy.tolist(), max(top, below + 2.0 * MARGIN_MM)]
+    top, below = top if top > lowest else lowest + MARGIN_MM, lowest - MARGIN_MM
+    low, high = [*low_xy.tolist(), below], [*high_xy.tolist(), top]
     deep = course.rapid[1:] & (end[:, 2] < high[2])
+    if deep.any():
+        deep &= np.isin(course.block[1:], _met_at_rapid(course, tools, low, high))
     for (x, y), away in zip(end[deep, :2].tolist(), radius[1:][deep].tolist(), strict=True):
         _leave_out((x, y), away, low, high)
     return Box((low[0], low[1], low[2]), (high[0], high[1], high[2]))
+
+
+def _met_at_rapid(course: Rows, tools: Mapping[int, Tool], low: list[float], high: list[float]) -> list[int]:
+    """Return the blocks that go through a box at rapid; what they have cut before does not count."""
+    box = Box((low[0], low[1], low[2]), (high[0], high[1], high[2]))
+    stock = Stock(box, max(high[0] - low[0], high[1] - low[1]) / _COARSE_CELLS)
+    cutting = Cutting(stock, tools)
+    cutting.add(course)
+    return [each.block for each in cutting.contacts if each.kind is ContactKind.RAPID]
 
 
 def around_turned(course: Rows) -> tuple[float, float, float]:
@@ -222,8 +236,8 @@ def around_turned(course: Rows) -> tuple[float, float, float]:
     places = np.concatenate((begin[cuts], end[cuts]))
     faces = cuts & (np.abs(begin[:, 2] - end[:, 2]) < 1e-6) & (end[:, 0] <= 0.0)
     high = float(end[faces][:, 2].max()) if faces.any() else 0.0
-    low = float(places[:, 2].min()) - MARGIN_MM
-    return 2.0 * float(np.abs(places[:, 0]).max()), low, max(high, low + 2.0 * MARGIN_MM)
+    low = min(float(places[:, 2].min()), high - MARGIN_MM) - MARGIN_MM
+    return 2.0 * float(np.abs(places[:, 0]).max()), low, high
 
 
 def _leave_out(place: tuple[float, float], radius: float, low: list[float], high: list[float]) -> None:

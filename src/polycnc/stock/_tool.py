@@ -83,6 +83,9 @@ class Tool:
             if any(low[0] > high[0] for low, high in pairwise(steps)):
                 raise UsageError(f"steps of a {name} that do not rise", hint="Give them from below.")
 
+    def __str__(self) -> str:
+        return f"{self.kind} of {self.diameter_mm:g} mm"
+
     @property
     def radius_mm(self) -> float:
         """Half the diameter."""

@@ -14,10 +14,14 @@ _NUMBERED = re.compile(
     r"\bT(?:OOL(?:\s+-)?)?\s*[#:]?\s*0*(\d{1,9})\b(?!/)|^\s*0*(\d{1,9}) = (?=[A-Za-z])", re.IGNORECASE
 )
 _NUMBER = r"(\d+(?:\.\d*)?(?![\d.]*e[-+]?\d)|\.\d+)"
-_DIAMETER = re.compile(rf"\bD(?:IA(?:METER)?)?\s*[=:]\s*{_NUMBER}", re.IGNORECASE)
-_OF_NAMED = re.compile(
-    rf"\bDIA\.?\s+(?:-\s+)?{_NUMBER}|(?<![\d.,/])(\d+)/(2|4|8|16|32|64)(?![\d./-])", re.IGNORECASE
+_DIAMETER = re.compile(
+    rf"\bD(?:IA(?:M(?:ETER)?)?)?\s*[=:]\s*{_NUMBER}(?:\s*(mm|in)(?![a-z]))?", re.IGNORECASE
 )
+_OF_NAMED = re.compile(
+    rf"\bDIA\.?\s+(?:-\s+)?{_NUMBER}|{_NUMBER}\s*DIA\b(?!\.?\s*(?:-|OFF))|(?<![\d.,/])(\d+)/(2|4|8|16|32|64)(?![\d./-])",
+    re.IGNORECASE,
+)
+_NOUN = re.compile(r"mill\b|drill\b|cutter\b|reamer\b", re.IGNORECASE)
 _STATEMENT = re.compile(r"^\s*TOOL/(MILL|DRILL|CHAMFER)\s*,(.*)", re.IGNORECASE)
 _CORNER = re.compile(rf"\bCR\s*[=:]\s*{_NUMBER}", re.IGNORECASE)
 _ANGLE = re.compile(
@@ -83,7 +87,7 @@ def _of_words(remark: str, inch: bool) -> Tool | None:
     kind = next((kind for pattern, kind in _KINDS if pattern.search(remark)), None)
     size = _diameter_mm(remark, inch)
     is_named = (
-        tool_number(remark) is not None and (found := _OF_NAMED.search(remark)) is not None and found[1]
+        tool_number(remark) is not None and (found := _OF_NAMED.search(remark)) is not None and not found[3]
     )
     if size is None or (kind is None and not is_named and not _DIAMETER.search(remark)):
         return None
@@ -132,11 +136,12 @@ def _of_statement(kind: str, numbers: str, unit_mm: float) -> Tool | None:
 
 def _diameter_mm(remark: str, inch: bool) -> float | None:
     if found := _DIAMETER.search(remark):
-        return float(found[1]) * (MM_PER_INCH if inch else 1.0)
+        in_inches = found[2].lower() == "in" if found[2] else inch
+        return float(found[1]) * (MM_PER_INCH if in_inches else 1.0)
     rest = _NUMBERED.sub("", remark)
-    named = _OF_NAMED.search(rest) if rest != remark else None
-    if named is not None and named[1]:
-        return float(named[1]) * (MM_PER_INCH if inch else 1.0)
+    named = _OF_NAMED.search(rest) if rest != remark or _NOUN.search(rest) else None
+    if named is not None and (size := named[1] or named[2]):
+        return float(size) * (MM_PER_INCH if inch else 1.0)
     if found := _SIZE.search(rest):
         if found["over"]:
             size = float(found["whole"] or 0.0) + float(found["over"]) / (float(found["under"]) or math.inf)
@@ -144,5 +149,5 @@ def _diameter_mm(remark: str, inch: bool) -> float | None:
             size = float(found["size"].replace(",", "."))
         return size * (1.0 if found["unit"].lower() == "mm" else MM_PER_INCH)
     if named is not None:  # fractions without a unit are inches
-        return float(named[2]) / float(named[3]) * MM_PER_INCH
+        return float(named[3]) / float(named[4]) * MM_PER_INCH
     return None

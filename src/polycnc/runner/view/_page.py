@@ -83,7 +83,12 @@ def page(
         "inch": programmed_inch if inch is None else inch,
         "tips": columns_of(axes) if "tip" not in columns else None,
         "chain": kinematics(machine) if "tip" in columns else [],
-        "shapes": tool_shapes(sorted(set(track.blocks.tool.tolist())), machine, texts),
+        "shapes": tool_shapes(
+            sorted(set(track.blocks.tool.tolist())),
+            machine,
+            texts,
+            None if result.machined is None else result.machined.tools,
+        ),
         "lathe": _is_lathe(axes, machine),
     }
     if result.machined is not None:

@@ -91,16 +91,22 @@ def kinematics(machine: MachineConfig | None) -> list[dict[str, Any]]:
 
 
 def tool_shapes(
-    numbers: list[int], machine: MachineConfig | None, texts: Mapping[str, ProgramText]
+    numbers: list[int],
+    machine: MachineConfig | None,
+    texts: Mapping[str, ProgramText],
+    known: Mapping[int, Tool | Insert] | None = None,
 ) -> dict[str, dict[str, Any]]:
     """Return by number how tools look: outline (radius, height) from the tip to the shaft, and the holder.
 
-    Inserts of a lathe have a plate (X, Z), from the point that programs guide.
+    They are those of machine and programs, or those that are `known`. Inserts of a lathe have a plate (X, Z), from the
+    point that programs guide.
     """
     if machine is None:
         return {}
-    known: Mapping[int, Tool | Insert]
-    known = turning_tools_of(machine, texts) if "Y" not in machine.axis_names else tools_of(machine, texts)
+    if known is None:
+        known = (
+            turning_tools_of(machine, texts) if "Y" not in machine.axis_names else tools_of(machine, texts)
+        )
     shapes = {}
     for number in numbers:
         at = machine.tools.get(number, ToolConfig())
