@@ -3,7 +3,7 @@
 (Positions are those of the axes: the centre of A and C is machine zero, and no transformation is active.)
 (Run it with --machine mill5)
 N10 G17 G21 G90 G94
-N20 T1 M6
+N20 T1 M6 (T1 D=8 flat end mill)
 N30 S12000 M3
 N40 G0 X0 Y0 Z80 A0 C0
 
@@ -14,7 +14,7 @@ N70 G0 Z80
 N80 C0
 
 (The groove: four turns of the table while the tool climbs down the cone and the table tilts upright)
-N90 T2 M6
+N90 T2 M6 (T2 D=6 ball end mill)
 N100 S16000 M3
 N110 G0 X8 Y0
 N120 Z32

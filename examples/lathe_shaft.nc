@@ -3,7 +3,7 @@
 (X is the distance from the turning centre, not the diameter; zero is the middle of the finished face.)
 (Run it with --machine lathe2)
 N10 G18 G21 G90
-N20 T1 M6
+N20 T1 M6 (T1 CNMG120408 roughing)
 N30 G96 S180 M4 M8
 N40 G0 X16 Z2
 
@@ -28,7 +28,7 @@ N190 G0 Z2
 N200 X20 Z20
 
 (Finishing: chamfer, step with a fillet, rounded shoulder)
-N210 T2 M6
+N210 T2 M6 (T2 VNMG160404 finishing)
 N220 G96 S240 M4
 N230 G0 X6 Z2
 N240 G1 Z1 F0.1

@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 import polycnc
-from polycnc.stock import Stock, read_stl
+from polycnc.stock import Stock, check_closed, read_stl
 from support.browser import browser, new_page
 from support.command import polycnc as command
 
@@ -102,14 +102,24 @@ class Opened:
 
 
 @pytest.mark.parametrize(
-    ("part", "machine", "drawn"),
-    [("bracket.nc", "mill3", (0, 1, 2)), ("lathe_shaft.nc", "lathe2", (1, None, 0))],
+    ("part", "machine", "stock", "drawn"),
+    [
+        ("bracket.nc", "mill3", None, (0, 1, 2)),
+        ("lathe_shaft.nc", "lathe2", "cylinder=30,-70,0", (1, None, 0)),
+    ],
     ids=["mill", "lathe"],
 )
 def test_slide_play_and_click(
-    chromium: Any, tmp_path: Path, part: str, machine: str, drawn: tuple[int | None, int | None, int | None]
+    chromium: Any,
+    tmp_path: Path,
+    part: str,
+    machine: str,
+    stock: str | None,
+    drawn: tuple[int | None, int | None, int | None],
 ) -> None:
-    view = Opened(chromium, tmp_path, part, machine)
+    view = Opened(chromium, tmp_path, part, machine, stock)
+    if stock is not None:
+        _saves_what_is_left(view, tmp_path, part, machine, stock)
     end_s = float(view.trace.t_s[-1])
     for share in (0.829, 0.171):
         view.slide(share)
@@ -137,6 +147,30 @@ def test_slide_play_and_click(
     assert np.min(np.abs(view.trace.t_s[first] - view.time_s)) < 0.0021
     view.assert_agrees(drawn)
     view.close()
+
+
+def _saves_what_is_left(view: Opened, folder: Path, part: str, machine: str, stock: str) -> None:
+    """The body that is shown at the end is saved as a closed surface with the volume of the run's; a click finds it."""
+    assert float(view.page.locator("#slider").evaluate("s => s.value / s.max")) == 1.0  # the part first
+    result = polycnc.run(EXAMPLES / part, machine, stock=stock, resolution_mm=1.0, check=False)
+    assert result.machined is not None
+    with view.page.expect_download() as saved:
+        view.page.locator("#save").select_option("stl")
+    saved.value.save_as(folder / "body.stl")
+    surface = read_stl(folder / "body.stl")
+    check_closed(folder / "body.stl", surface)
+    whole = result.machined.stock
+    assert surface.volume_mm3 == pytest.approx(whole.volume_mm3, rel=0.01)
+    assert surface.vertices.min(axis=0) == pytest.approx(whole.mesh().vertices.min(axis=0), abs=0.5)
+    at = [22.0, 0.0, 0.0] if machine == "mill5" else [-17.0, 0.0, 0.0]  # below it is what a cut has left
+    met = view.page.evaluate(
+        "at => document.getElementById('stage').seen.body.pick(at.map((v, i) => v + (i === 2 ? 90 : 0)), at)",
+        at,
+    )
+    assert met["place"][:2] == pytest.approx(at[:2], abs=0.01)
+    assert 0.0 < met["t"] <= float(view.trace.t_s[-1])
+    view.page.locator("#section").select_option("1")
+    view.page.locator("#section").select_option("")
 
 
 ON_STAGE = """(place) => {
@@ -200,7 +234,9 @@ def test_smaller_screens_show_all_in_one_column_and_in_the_dark(chromium: Any, t
 def test_five_axes_as_the_part_sees_them(chromium: Any, tmp_path: Path) -> None:
     """In the frame of the part the tool is drawn where two rotations bring it; a chart shows the speed of C."""
     rotation = pytest.importorskip("scipy.spatial.transform").Rotation
-    view = Opened(chromium, tmp_path, "five_axis.nc", "mill5")
+    stock = "cylinder=90,0,36"
+    view = Opened(chromium, tmp_path, "five_axis.nc", "mill5", stock, fails=True)  # it begins in the stock
+    _saves_what_is_left(view, tmp_path, "five_axis.nc", "mill5", stock)
     view.slide(0.9)  # in the groove: all axes move
     row = view.row_at()
     x, y, z, a, c = view.trace.setpoint[row]

@@ -89,6 +89,8 @@ def print_summary(result: RunResult, units: Units = Units.MM) -> None:
     if result.machined is not None:
         removed, left = result.removed_mm3 / 1000.0, result.machined.stock.volume_mm3 / 1000.0
         say(f"removed    {removed:,.3f} cm3 of {removed + left:,.3f} cm3")
+        if cut := _hardest(result.machined.engagement.most):
+            say(f"  most     {cut}")
         if result.machined.idle_s:
             say(f"  idle     {time_text(result.machined.idle_s)} of feed removed nothing")
         if result.machined.comparison is not None:
@@ -97,6 +99,13 @@ def print_summary(result: RunResult, units: Units = Units.MM) -> None:
     for collision in result.collisions:
         place = "" if collision.position is None else f"{collision.position}: "
         say_problem(f"{place}{collision}", lead=bold_red("collision: "))
+
+
+def _hardest(most: tuple[float, float, float, float]) -> str:
+    """Return the greatest figures of the cuts that are known."""
+    rate, deep, wide, chip = most
+    texts = ((rate * 0.06, "cm3/min"), (deep, "mm deep"), (wide, "mm wide"), (chip, "mm a chip"))
+    return ", ".join(f"{value:,.3f} {what}" for value, what in texts if value > 0.0)
 
 
 def _print_messages(result: RunResult) -> None:

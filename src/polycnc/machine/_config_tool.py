@@ -60,4 +60,7 @@ class ToolConfig(StrictModel):
     thread_deg: Annotated[float, Field(ge=0, lt=180)] = Field(
         default=0.0, description="Angle between the flanks of a threading tool."
     )
+    teeth: Annotated[int, Field(ge=0, le=200)] = Field(
+        default=0, description="How many edges cut in a turn, for the thickness of chips; 0: as remarks say."
+    )
     left_hand: bool = Field(default=False, description="It cuts with M4.")

@@ -11,7 +11,19 @@ import numpy.typing as npt
 
 from polycnc.errors import SourcePosition
 from polycnc.runner._blocks import Blocks
-from polycnc.stock import ContactKind, Form, Insert, Rows, Stock, TargetComparison, Tool, Turned, Voxels
+from polycnc.runner._engaged import engaged
+from polycnc.stock import (
+    ContactKind,
+    Engagement,
+    Form,
+    Insert,
+    Rows,
+    Stock,
+    TargetComparison,
+    Tool,
+    Turned,
+    Voxels,
+)
 
 Floats = npt.NDArray[np.float64]
 
@@ -56,14 +68,15 @@ class Machined:
 
     `idle` are blocks that feed through air for long, `idle_s` is how long tools fed without removing anything;
     `comparison` is with the target.
-    `removed_mm3` [blocks] belongs to `blocks`. `messages` say what was assumed. The body of `form` was cut by `tools`
-    on their `course`, from `zero_mm` in machine coordinates.
+    `removed_mm3` [blocks] belongs to `blocks`; `engagement` is how hard tools cut when. `messages` say what was
+    assumed. The body of `form` was cut by `tools` on their `course`, from `zero_mm` in machine coordinates.
     """
 
     stock: Stock | Turned | Voxels
     blocks: Blocks
     removed_mm3: Floats
     by_tool_mm3: Mapping[int, float]
+    engagement: Engagement
     collisions: list[Collision]
     idle: list[IdleFeed]
     idle_s: float
@@ -102,6 +115,7 @@ class Machined:
                 {"program": program, "line": line, "volume_mm3": volume}
                 for (program, line), volume in lines.items()
             ],
+            "engagement": engaged(self.engagement, self.blocks),
             "collisions": [
                 {
                     "kind": each.kind.name.lower(),

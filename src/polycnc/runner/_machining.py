@@ -15,7 +15,7 @@ from polycnc.nc import CONTEXT_SHIFT, BlockRecords
 from polycnc.runner._blocks import BlockTable, ExecutedBlock
 from polycnc.runner._machined import Collision, IdleFeed, Machined
 from polycnc.runner._rotation import tip_and_axis, turning_axes
-from polycnc.runner._stock_tools import tools_of
+from polycnc.runner._stock_tools import hand_tool, said_form, tools_of
 from polycnc.runner._turning_tools import turning_tools_of
 from polycnc.stock import (
     Course,
@@ -34,6 +34,10 @@ from polycnc.stock import (
 )
 
 Floats = npt.NDArray[np.float64]
+
+
+_NOWHERE = -1
+"""The number of no tool."""
 
 
 class MachiningCollector:
@@ -63,6 +67,9 @@ class MachiningCollector:
         self._course = Course()
         self._zero: list[float] | None = None
         self.texts = self._table.texts
+        self._said = ""  # about the form
+        self._notes: list[str] = []
+        self._came_down = False
 
     def add(self, rows: Floats, tags: npt.NDArray[np.int64], records: BlockRecords) -> None:
         """Take a piece of the record."""
@@ -87,12 +94,39 @@ class MachiningCollector:
             if words is not None:
                 offsets = [self._config.work_offset(name) for name in words.work]
                 self._zero = [sum(offset[axis] for offset in offsets) for axis in self._axes]
+        tool = self._without_start(place, rapid, tool)
         if self._lathe:
             place = np.insert(place, 1, 0.0, axis=1)
         tip, axis = place - shift, np.array([[0.0, 0.0, 1.0]])
         if self._turning:
             tip, axis = tip_and_axis(self._config, position, place, -shift)
         self._course.add(Rows(rows[:, TIME_S].copy(), tip, block, tool, rapid, turns, axis))
+
+    def _without_start(
+        self, place: Floats, rapid: npt.NDArray[np.bool_], tool: npt.NDArray[np.int64]
+    ) -> npt.NDArray[np.int64]:
+        """Return the tools with none where the machine has not come down yet: where it was before is not known."""
+        if self._came_down:
+            return tool
+        height = place[:, 0 if self._lathe else -1]
+        down = np.flatnonzero(height[1:] < height[:-1])
+        self._came_down = len(down) > 0
+        first = int(down[0]) + 1 if len(down) else len(tool)
+        still = np.concatenate(([True], np.all(place[1:] == place[:-1], axis=1)))
+        return np.where((rapid | still) & (np.arange(len(tool)) < first), _NOWHERE, tool)
+
+    def _with_hand_tool(
+        self, course: Rows, tools: Mapping[int, Tool | Insert]
+    ) -> Mapping[int, Tool | Insert]:
+        """Return tools with the one that a program without a change of tools cuts with, if that can be read."""
+        if 0 in tools or np.any(course.tool[~course.rapid] > 0):
+            return tools
+        rotating = {number: tool for number, tool in tools.items() if isinstance(tool, Tool)}
+        tool = hand_tool(self.texts, rotating)
+        if tool is None:
+            return tools
+        self._notes.append(f"no M6 brings a tool: the one that the program describes is taken, {tool}")
+        return {**tools, 0: tool}
 
     def _context(self, tag: int, records: BlockRecords) -> tuple[list[float], int]:
         """Return how a block's tool hangs from the spindle, and its number."""
@@ -117,12 +151,13 @@ class MachiningCollector:
         """
         course, (x, y, z) = self._course.rows(), self._zero_mm()
         course = replace(course, tip=course.tip - (x, y, z))
+        form, self._said = said_form(form, self.texts)
         if self._lathe:
             given = turning_tools_of(self._config, self.texts) if tools is None else tools
             turned = TurningCutting(form.turned_body(course), given)
             turned.add(course)
             return self._what_was_cut(turned.stock, turned.tally, form, course, given)
-        given = tools_of(self._config, self.texts) if tools is None else tools
+        given = self._with_hand_tool(course, tools_of(self._config, self.texts)) if tools is None else tools
         mills = {number: tool for number, tool in given.items() if isinstance(tool, Tool)}
         if self._turned:
             solid = TurnedCutting(form.voxels(), mills)
@@ -156,6 +191,7 @@ class MachiningCollector:
             blocks=blocks,
             removed_mm3=removed,
             by_tool_mm3=dict(tally.by_tool_mm3),
+            engagement=tally.engaged.all(),
             collisions=[
                 Collision(
                     each.kind, at.program, at.line, self._place(at), each.t_s, each.place, each.depth_mm
@@ -171,7 +207,8 @@ class MachiningCollector:
             idle_s=tally.idle_s,
             comparison=None,
             messages=[
-                f"stock: {stock}, {stock.cell_mm:g} mm a cell",
+                f"stock: {stock}, {stock.cell_mm:g} mm a cell{self._said}",
+                *self._notes,
                 *map(_cuts_nothing, sorted(tally.unknown_tools)),
             ],
             form=form,
@@ -184,8 +221,8 @@ class MachiningCollector:
 def _cuts_nothing(tool: int) -> str:
     if tool == 0:
         return (
-            "no tool is in the spindle in some cuts: nothing is removed there; program T and M6 before them, or"
-            " describe the only tool in a comment like (end mill 6 mm)"
+            "no tool is in the spindle in some cuts: nothing is removed there; program T and M6 before them,"
+            " or say the one that is there in a comment like (T1 D=10)"
         )
     return (
         f"the shape of tool {tool} is not known: it cuts nothing here; a comment like (T{tool} D=10)"

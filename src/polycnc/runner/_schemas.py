@@ -128,6 +128,7 @@ def _stock() -> Schema:
             "removed_mm3": volume,
             "removed_by_tool_mm3": _map(volume, "What each tool has removed, by its number."),
             "removed_by_line_mm3": _list(_object({"program": _TEXT, "line": _LINE, "volume_mm3": volume})),
+            "engagement": _engagement(),
             "collisions": _list(
                 _object(
                     {
@@ -166,6 +167,26 @@ def _stock() -> Schema:
         },
         ("target",),
     )
+
+
+def _engagement() -> Schema:
+    most = {
+        "rate_mm3_s": _or_null(_number("Greatest removal in a second, mm3/s.", low=0.0)),
+        "axial_mm": _or_null(
+            _length("Greatest depth of a cut, along the tool; of a turning tool towards the axis")
+        ),
+        "radial_mm": _or_null(_length("Greatest width of a cut; null: not known, as of turning tools")),
+        "chip_mm": _or_null(_length("Greatest thickness of a chip; null: teeth or speed are not known")),
+    }
+    mean = _number("Mean removal in a second while it cut, mm3/s.", low=0.0)
+    line = {
+        "program": _TEXT,
+        "line": _LINE,
+        "cutting_s": _time("In the material"),
+        "mean_mm3_s": mean,
+        **most,
+    }
+    return _object({**most, "by_line": _list(_object(line))})
 
 
 def _check() -> Schema:

@@ -9,9 +9,12 @@ from dataclasses import replace
 from polycnc.errors import UsageError
 from polycnc.machine import MachineConfig, ToolConfig
 from polycnc.nc import ProgramText
-from polycnc.stock import Tool, ToolKind, tool_number, tool_of_remark
+from polycnc.stock import Form, Tool, ToolKind, stock_of_remarks, tool_number, tool_of_remark
 
-_REMARK_OR_TOOL = re.compile(rb"\(([^)\r\n]*)\)|;([^\r\n]*)|[Tt][ \t]*0*([0-9]+)")
+_REMARK_OR_TOOL = re.compile(  # an M6 counts for the T before it
+    rb"\(([^)\r\n]*)\)|;([^\r\n]*)|[Tt][ \t]*0*([0-9]+)|[Mm]0*(6)(?![0-9.])(?![^\r\n(;]*[Tt][ \t]*[0-9])"
+)
+_REMARK = re.compile(rb"\(([^)\r\n]*)\)|;([^\r\n]*)")
 _INCH = re.compile(rb"[Gg]0*20(?![0-9.])")
 
 
@@ -42,24 +45,7 @@ def tools_of(config: MachineConfig, texts: Mapping[str, ProgramText]) -> dict[in
                 tools[number] = whole
         except UsageError as error:
             raise UsageError(f"tool {number} of '{config.name}': {error.what}", hint=error.hint) from None
-    if (only := _only_tool(tools, texts)) is not None:
-        tools[0] = only
     return tools
-
-
-def _only_tool(tools: Mapping[int, Tool], texts: Mapping[str, ProgramText]) -> Tool | None:
-    """Return the tool of programs that change none: the only one that is known, or the first that a remark tells."""
-    for text in texts.values():
-        if any(found[3] is not None for found in _REMARK_OR_TOOL.finditer(text.content)):
-            return None
-    if tools:
-        return next(iter(tools.values())) if len(tools) == 1 else None
-    told = (
-        tool_of_remark((found[1] or found[2] or b"").decode("utf-8", "replace"), inch=_is_inch(text))
-        for text in texts.values()
-        for found in _REMARK_OR_TOOL.finditer(text.content)
-    )
-    return next((tool for tool in told if tool is not None), None)
 
 
 def _is_inch(text: ProgramText) -> bool:
@@ -86,19 +72,51 @@ def _whole(tool: Tool | None, config: ToolConfig) -> Tool | None:
         shank=tuple((height, 0.5 * diameter) for height, diameter in config.shank),
         holder=tuple((height, 0.5 * diameter) for height, diameter in config.holder),
         left_hand=config.left_hand or tool.left_hand,
+        teeth=config.teeth or tool.teeth,
     )
 
 
+def said_form(form: Form, texts: Mapping[str, ProgramText]) -> tuple[Form, str]:
+    """Return the body that the remarks of programs say in place of `auto`, and a word about that for a message."""
+    if form.text == "auto":
+        for text in texts.values():
+            remarks = (found[1] or found[2] for found in _REMARK.finditer(text.content))
+            inch = _is_inch(text)
+            said = stock_of_remarks((each.decode("utf-8", "replace") for each in remarks if each), inch=inch)
+            if said is not None:
+                return replace(form, text=said), f", as '{text.name}' says"
+    return form, ""
+
+
 def remarks_of_tools(text: ProgramText) -> Iterator[tuple[int, str]]:
-    """Yield numbers of tools with remarks: those that name them, and the last one before a T word."""
-    last = ""
+    """Yield numbers of tools with remarks: those that name them, the last one before a T word, or before its M6."""
+    last, number = "", None
     for found in _REMARK_OR_TOOL.finditer(text.content):
-        if found[3] is not None:
-            if last:
-                yield int(found[3][:9]), last
+        if found[3] is not None or found[4] is not None:
+            number = int(found[3][:9]) if found[3] is not None else number
+            if last and number is not None:
+                yield number, last
+            last = ""
             continue
         remark = (found[1] or found[2] or b"").decode("utf-8", "replace")
         named = tool_number(remark)
         if named is not None:
             yield named, remark
         last = "" if named is not None else remark
+
+
+def hand_tool(texts: Mapping[str, ProgramText], tools: Mapping[int, Tool]) -> Tool | None:
+    """Return the tool of programs that never change it: by their one T word, else the only one that is described."""
+    numbers, described = set[int](), list[Tool]()
+    for text in texts.values():
+        inch = _is_inch(text)
+        for found in _REMARK_OR_TOOL.finditer(text.content):
+            if found[3] is not None:
+                numbers.add(int(found[3][:9]))
+            remark = (found[1] or found[2] or b"").decode("utf-8", "replace")
+            if (tool := tool_of_remark(remark, inch=inch)) is not None and tool not in described:
+                described.append(tool)
+    if numbers:
+        return tools.get(numbers.pop()) if len(numbers) == 1 else None
+    only = described or list(tools.values())
+    return only[0] if len(only) == 1 else None

@@ -3,6 +3,7 @@
 from polycnc.stock._contacts import Contact, ContactKind, Idle
 from polycnc.stock._course import Course
 from polycnc.stock._cutting import Cutting
+from polycnc.stock._engagement import Engagement
 from polycnc.stock._fixtures import check_fixtures, fixtures_of
 from polycnc.stock._form import Form, NoStockError, around
 from polycnc.stock._insert import Insert, InsertKind, grooving_tool, iso_insert, threading_tool
@@ -10,8 +11,10 @@ from polycnc.stock._mesh import Mesh
 from polycnc.stock._mesh_files import MESH_FORMATS
 from polycnc.stock._profile import Arc, Line, Profile, make_profile
 from polycnc.stock._rows import Rows
-from polycnc.stock._solid import read_stl
+from polycnc.stock._solid import check_closed, read_stl
 from polycnc.stock._stock import Box, Stock
+from polycnc.stock._stock_text import stock_of_remarks
+from polycnc.stock._tally import Tally
 from polycnc.stock._target import TOLERANCE_MM, Target, TargetComparison
 from polycnc.stock._tool import Tool, ToolKind
 from polycnc.stock._tool_text import tool_number, tool_of_remark
@@ -19,7 +22,6 @@ from polycnc.stock._turned import Turned
 from polycnc.stock._turned_cutting import TurnedCutting
 from polycnc.stock._turning import TurningCutting
 from polycnc.stock._voxels import Voxels
-from polycnc.stock._ways import Tally
 
 __all__ = [
     "MESH_FORMATS",
@@ -30,6 +32,7 @@ __all__ = [
     "ContactKind",
     "Course",
     "Cutting",
+    "Engagement",
     "Form",
     "Idle",
     "Insert",
@@ -50,12 +53,14 @@ __all__ = [
     "TurningCutting",
     "Voxels",
     "around",
+    "check_closed",
     "check_fixtures",
     "fixtures_of",
     "grooving_tool",
     "iso_insert",
     "make_profile",
     "read_stl",
+    "stock_of_remarks",
     "threading_tool",
     "tool_number",
     "tool_of_remark",

@@ -12,9 +12,10 @@ from polycnc.stock._contacts import Contact, ContactKind, Idle
 from polycnc.stock._rows import Rows
 from polycnc.stock._stock import Stock
 from polycnc.stock._sweep import AT_X, AT_Y, DEPTH_MM, FIGURES, VOLUME_MM3, sweep
+from polycnc.stock._tally import Tally
 from polycnc.stock._target import Target
 from polycnc.stock._tool import Tool, ToolKind
-from polycnc.stock._ways import Tally, Ways, WaysOfRows, runs
+from polycnc.stock._ways import Ways, WaysOfRows, runs
 
 Floats = npt.NDArray[np.float64]
 Integers = npt.NDArray[np.int64]
@@ -74,7 +75,9 @@ class Cutting:
         self._fixtures = fixtures
         self._target = target
         self.tally = Tally()
-        self._ways = WaysOfRows(CHORD_SHARE * stock.cell_mm)
+        self._ways = WaysOfRows(
+            CHORD_SHARE * stock.cell_mm, {number: tool.radius_mm for number, tool in tools.items()}
+        )
 
     @property
     def removed_mm3(self) -> float:
@@ -119,7 +122,7 @@ class Cutting:
     def _sweep(self, ways: Ways) -> None:
         outlines = self._outlines.get(ways.number)
         if outlines is None:
-            self.tally.unknown_tools.add(ways.number)
+            self.tally.miss(ways)
             return
         none, grid, least = outlines.none, self.stock.grid, LEAST_DEPTH_SHARE * self.stock.cell_mm
         for fixture in self._fixtures:
@@ -148,7 +151,7 @@ class Cutting:
         sweep(grid, ways.places, none, outlines.shank, shank, shank)
         self._note(ContactKind.HOLDER, ways, touched, least)
         self._note(ContactKind.SHANK, ways, shank, least)
-        self.tally.count(ways, cut[:, VOLUME_MM3])
+        self.tally.count(ways, cut, tool)
         self._note(ContactKind.FLUTES, ways, cut, tool.flute_mm)
         if len(outlines.above_flutes):
             self._note_walls(ways, cut, outlines, tool.flute_mm)

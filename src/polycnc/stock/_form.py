@@ -11,6 +11,8 @@ from pathlib import Path
 import numpy as np
 
 from polycnc.errors import UsageError
+from polycnc.stock._contacts import ContactKind
+from polycnc.stock._cutting import Cutting
 from polycnc.stock._rows import Rows
 from polycnc.stock._solid import solid_stock
 from polycnc.stock._stock import Box, Stock, check_cell
@@ -22,9 +24,11 @@ from polycnc.stock._voxels import Voxels
 MARGIN_MM = 1.0
 """Of an `auto` body around what is cut."""
 _FINER_TURNED = 5
+_COARSE_CELLS = 200
 CELLS_ACROSS = 1000
 """How many cells there are along the longer side where no resolution is given."""
 _FORMS = "auto, box=X0,Y0,Z0,X1,Y1,Z1, cylinder=D,Z0,Z1 or the name of an STL file"
+_TURNS = ("x", "y")
 
 
 class NoStockError(UsageError):
@@ -49,13 +53,19 @@ class Form:
         kind, _, numbers = self.text.partition("=")
         if kind in ("box", "cylinder"):
             numbers_of(self.text, numbers, 6 if kind == "box" else 3)
-        elif self.text != "auto" and not self.text.lower().endswith(".stl"):
+        elif self.text != "auto" and not _file_of(self.text)[0].lower().endswith(".stl"):
             raise UsageError(f"'{self.text}' is no stock", hint=f"Write {_FORMS}.")
         if self.cell_mm is not None:
             check_cell(self.cell_mm)
         check_tolerance(self.tolerance_mm)
         if self.target is not None and not self.target.lower().endswith(".stl"):
             raise UsageError(f"'{self.target}' is no target", hint="Name an STL file.")
+
+    @property
+    def file(self) -> Path | None:
+        """The file that it is read from, None if it is another body."""
+        name = _file_of(self.text)[0]
+        return Path(name) if name.lower().endswith(".stl") else None
 
     def body(self, course: Rows, tools: Mapping[int, Tool]) -> Stock:
         """Return the body for a course of the tool.
@@ -73,7 +83,8 @@ class Form:
         elif self.text == "auto":
             box = around(course, tools)
         else:
-            return solid_stock(Path(self.text), self.cell_mm, _cell_mm)
+            name, turned = _file_of(self.text)
+            return solid_stock(Path(name), self.cell_mm, _cell_mm, turned)
         return Stock(
             box, self.cell_mm or _cell_mm(max(b - a for a, b in zip(box.low[:2], box.high, strict=False)))
         )
@@ -129,6 +140,13 @@ class Form:
         return None if self.target is None else Target(Path(self.target), stock, self.tolerance_mm)
 
 
+def _file_of(text: str) -> tuple[str, str]:
+    """Return the name of a file, and the axis that its body is turned over about: `x`, `y` or none."""
+    kind, _, name = text.partition("=")
+    axis, _, turned = kind.lower().partition("-")
+    return (name, axis) if axis in _TURNS and turned == "turned" and name else (text, "")
+
+
 def _cell_mm(size_mm: float) -> float:
     """Return a resolution for a body of this size: 1, 2 or 5 times a power of ten."""
     wanted = max(size_mm, 1e-3) / CELLS_ACROSS
@@ -157,8 +175,8 @@ def numbers_of(text: str, numbers: str, count: int, forms: str = _FORMS) -> list
 def around(course: Rows, tools: Mapping[int, Tool]) -> Box:
     """Return the box that holds what is cut, with a margin beside and below it.
 
-    Its top is program zero where the tool cuts below that, else the highest cut across. Where the tool gets down at
-    rapid, close to a side, the box ends beside it.
+    Its top is program zero where the tool cuts below that, else the highest cut across. Where the tool gets down
+    into it at rapid, close to a side, the box ends beside it.
 
     Raises:
         UsageError: nothing is cut.
@@ -181,12 +199,23 @@ def around(course: Rows, tools: Mapping[int, Tool]) -> Box:
     across = cuts & np.any(begin[:, :2] != end[:, :2], axis=1)
     lowest = float(places[:, 2].min())
     top = 0.0 if lowest < 0.0 else float(end[across if across.any() else cuts][:, 2].max())
-    below = lowest - MARGIN_MM
-    low, high = [*low_xy.tolist(), below], [*high_xy.tolist(), max(top, below + 2.0 * MARGIN_MM)]
+    top, below = top if top > lowest else lowest + MARGIN_MM, lowest - MARGIN_MM
+    low, high = [*low_xy.tolist(), below], [*high_xy.tolist(), top]
     deep = course.rapid[1:] & (end[:, 2] < high[2])
+    if deep.any():
+        deep &= np.isin(course.block[1:], _met_at_rapid(course, tools, low, high))
     for (x, y), away in zip(end[deep, :2].tolist(), radius[1:][deep].tolist(), strict=True):
         _leave_out((x, y), away, low, high)
     return Box((low[0], low[1], low[2]), (high[0], high[1], high[2]))
+
+
+def _met_at_rapid(course: Rows, tools: Mapping[int, Tool], low: list[float], high: list[float]) -> list[int]:
+    """Return the blocks that go through a box at rapid; what they have cut before does not count."""
+    box = Box((low[0], low[1], low[2]), (high[0], high[1], high[2]))
+    stock = Stock(box, max(high[0] - low[0], high[1] - low[1]) / _COARSE_CELLS)
+    cutting = Cutting(stock, tools)
+    cutting.add(course)
+    return [each.block for each in cutting.contacts if each.kind is ContactKind.RAPID]
 
 
 def around_turned(course: Rows) -> tuple[float, float, float]:
@@ -207,8 +236,8 @@ def around_turned(course: Rows) -> tuple[float, float, float]:
     places = np.concatenate((begin[cuts], end[cuts]))
     faces = cuts & (np.abs(begin[:, 2] - end[:, 2]) < 1e-6) & (end[:, 0] <= 0.0)
     high = float(end[faces][:, 2].max()) if faces.any() else 0.0
-    low = float(places[:, 2].min()) - MARGIN_MM
-    return 2.0 * float(np.abs(places[:, 0]).max()), low, max(high, low + 2.0 * MARGIN_MM)
+    low = min(float(places[:, 2].min()), high - MARGIN_MM) - MARGIN_MM
+    return 2.0 * float(np.abs(places[:, 0]).max()), low, high
 
 
 def _leave_out(place: tuple[float, float], radius: float, low: list[float], high: list[float]) -> None:

@@ -20,6 +20,7 @@ _ANGLES_DEG = {
 """Angle of the corner by the first letter. Source: ISO 1832."""
 _ISO = re.compile(r"\b([A-Z])[A-Z]{3}[ -]?(\d{2})(\d{2})(\d{2})\b")
 _HALF_TURN, _RIGHT = 180.0, 90.0
+_ROUND_STEPS = 6
 APPROACH_DEG = 95.0
 """Angle of the main edge to the way of the feed, where it is not said."""
 
@@ -86,6 +87,27 @@ class Insert:
     def middle(self) -> tuple[float, float]:
         """Return the way from the tip to the middle between the corners, along X and Z (mm)."""
         return -self.tip[0] * self.nose_mm, -self.tip[1] * (self.nose_mm + 0.5 * self.flat_mm)
+
+    def plate(self, longest_mm: float) -> list[tuple[float, float]]:
+        """Return the corners of its face, along X and Z from the tip (mm), with edges of at most `longest_mm`."""
+        edge, (x, z), down = min(self.edge_mm, longest_mm), self.middle(), -1.0 if self.inside else 1.0
+        found = []
+        for side, angle_deg in ((1.0, self.right_deg), (-1.0, self.left_deg)):
+            angle = math.radians(angle_deg)
+            corner = z + side * 0.5 * self.flat_mm
+            flank = [
+                (
+                    edge * math.sin(angle) - self.nose_mm * math.cos(angle),
+                    corner + side * (edge * math.cos(angle) + self.nose_mm * math.sin(angle)),
+                )
+            ]
+            turns = [angle * step / _ROUND_STEPS for step in range(_ROUND_STEPS, -1, -1)]
+            flank += [
+                (-self.nose_mm * math.cos(turn), corner + side * self.nose_mm * math.sin(turn))
+                for turn in turns
+            ]
+            found += flank if side > 0.0 else flank[::-1]
+        return [(x + down * up, along) for up, along in found]
 
 
 def iso_insert(

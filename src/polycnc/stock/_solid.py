@@ -109,8 +109,12 @@ def check_closed(path: Path, surface: Mesh) -> None:
         raise UsageError(f"the surface in '{path}' is inside out", hint="Turn its normals, then export it.")
 
 
-def solid_stock(path: Path, cell_mm: float | None, default_mm: Callable[[float], float]) -> Stock:
+def solid_stock(
+    path: Path, cell_mm: float | None, default_mm: Callable[[float], float], turned: str = ""
+) -> Stock:
     """Return the body in an STL file, seen from above: what lies under an overhang counts as full.
+
+    It is turned over about the axis `turned`, `x` or `y`, through its middle: it lies where it was, its bottom on top.
 
     Raises:
         UsageError: no such file, no closed surface, or too many cells.
@@ -118,6 +122,9 @@ def solid_stock(path: Path, cell_mm: float | None, default_mm: Callable[[float],
     surface = read_stl(path)
     check_closed(path, surface)
     low, high = surface.vertices.min(axis=0), surface.vertices.max(axis=0)
+    if turned:
+        across = [1, 2] if turned == "x" else [0, 2]
+        surface.vertices[:, across] = (low + high - surface.vertices)[:, across]
     stock = Stock(
         Box((float(low[0]), float(low[1]), float(low[2])), (float(high[0]), float(high[1]), float(high[2]))),
         cell_mm or default_mm(float(max(high[:2] - low[:2]))),

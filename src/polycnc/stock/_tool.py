@@ -36,7 +36,8 @@ class Tool:
     `corner_mm` is the radius at the end of a bull-nosed tool, `angle_deg` the included angle of a point (drills,
     chamfering tools) or the angle of a flank to the axis (tapers), `tip_mm` the flat diameter at the end of a
     chamfering or tapered tool. `flute_mm` is how far up it cuts, infinite where that is not known. `shank` and `holder`
-    are cylinders above: height above the tip and radius, from below. A `left_hand` tool cuts with M4.
+    are cylinders above: height above the tip and radius, from below. A `left_hand` tool cuts with M4. `teeth` is how
+    many edges cut in a turn, 0 where that is not known.
 
     Raises:
         UsageError: a size that no tool has, or sizes that do not fit together.
@@ -51,6 +52,7 @@ class Tool:
     holder: tuple[tuple[float, float], ...] = ()
     shank: tuple[tuple[float, float], ...] = ()
     left_hand: bool = False
+    teeth: int = 0
 
     def __post_init__(self) -> None:
         sizes = (self.diameter_mm, *(size for step in (*self.shank, *self.holder) for size in step))
@@ -80,6 +82,9 @@ class Tool:
         for name, steps in (("shank", self.shank), ("holder", self.holder)):
             if any(low[0] > high[0] for low, high in pairwise(steps)):
                 raise UsageError(f"steps of a {name} that do not rise", hint="Give them from below.")
+
+    def __str__(self) -> str:
+        return f"{self.kind} of {self.diameter_mm:g} mm"
 
     @property
     def radius_mm(self) -> float:

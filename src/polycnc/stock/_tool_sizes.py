@@ -9,7 +9,7 @@ MM_PER_INCH = 25.4
 
 _WITH_UNIT = re.compile(
     r"(?<![\d.,/])(?:(?P<whole>\d+)[ -]+)?(?:(?P<over>\d+)/(?P<under>\d+)|(?P<size>\d+(?:[.,]\d*)?|\.\d+))"
-    r"\s*-?(?P<unit>mm|inch|in|\")(?![a-z])",
+    r"\s*-?(?P<unit>mm|inch(?:es)?|in|\")(?![a-z])",
     re.IGNORECASE,
 )
 _KIND = r"(?:(?:end|face|slot|ball|flat|spot|cent(?:er|re))[ -]?)?(?:mill|drill|tap|ream(?:er)?)"

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import re
 from dataclasses import replace
 
@@ -9,9 +10,19 @@ from polycnc.errors import UsageError
 from polycnc.stock._tool import Tool, ToolKind
 from polycnc.stock._tool_sizes import MM_PER_INCH, size_mm
 
-_NUMBERED = re.compile(r"\bT(?:OOL)?\s*[#:]?\s*0*(\d{1,9})\b", re.IGNORECASE)
+_NUMBERED = re.compile(
+    r"\bT(?:OOL(?:\s+-)?)?\s*[#:]?\s*0*(\d{1,9})\b(?!/)|^\s*0*(\d{1,9}) = (?=[A-Za-z])", re.IGNORECASE
+)
 _NUMBER = r"(\d+(?:\.\d*)?(?![\d.]*e[-+]?\d)|\.\d+)"
-_DIAMETER = re.compile(rf"\bD(?:IA(?:METER)?)?\s*[=:]\s*{_NUMBER}", re.IGNORECASE)
+_DIAMETER = re.compile(
+    rf"\bD(?:IA(?:M(?:ETER)?)?)?\s*[=:]\s*{_NUMBER}(?:\s*(mm|in)(?![a-z]))?", re.IGNORECASE
+)
+_OF_NAMED = re.compile(
+    rf"\bDIA\.?\s+(?:-\s+)?{_NUMBER}|{_NUMBER}\s*DIA\b(?!\.?\s*(?:-|OFF))",
+    re.IGNORECASE,
+)
+_NOUN = re.compile(r"mill\b|drill\b|cutter\b|reamer\b", re.IGNORECASE)
+_STATEMENT = re.compile(r"^\s*TOOL/(MILL|DRILL|CHAMFER)\s*,(.*)", re.IGNORECASE)
 _CORNER = re.compile(rf"\bCR\s*[=:]\s*{_NUMBER}", re.IGNORECASE)
 _ANGLE = re.compile(
     rf"\b(?:TAPER|TIP|ANGLE)\s*[=:]?\s*{_NUMBER}\s*(?:DEG|°)|{_NUMBER}\s*(?:DEG\w*|°)", re.IGNORECASE
@@ -21,10 +32,12 @@ _UNLIKE = re.compile(
     r"|\bradius mill|corner round|\bround[ -]?over|\bform (?:mill|tool|cutter)|\bogee\b|\bcove\b",
     re.IGNORECASE,
 )
+_TEETH = re.compile(r"(?<![\d.])(\d{1,2})[ -]?(?:flutes?|fl|teeth|tooth)\b(?! *len)", re.IGNORECASE)
 _LEFT_HAND = re.compile(r"\bleft[ -]?hand(?:ed)?\b|\bLH\b", re.IGNORECASE)
 _POINT_DEG = 118.0
 _CHAMFER_DEG = 90.0
 _MOST_FLANK_DEG = 60.0
+_ALL_ROUND = 0.49  # of the diameter: the corner of a ball, rounded
 _KINDS = (
     (re.compile(r"\bball|\bspherical", re.IGNORECASE), ToolKind.BALL),
     (re.compile(r"\bbull|\bcorner radius|\btoroid", re.IGNORECASE), ToolKind.BULL),
@@ -40,7 +53,7 @@ _KINDS = (
 def tool_number(remark: str) -> int | None:
     """Return the number of the tool that a remark is about, None if it names none."""
     found = _NUMBERED.search(remark)
-    return int(found[1]) if found else None
+    return int(found[1] or found[2]) if found else None
 
 
 def tool_of_remark(remark: str, *, inch: bool = False) -> Tool | None:
@@ -52,9 +65,24 @@ def tool_of_remark(remark: str, *, inch: bool = False) -> Tool | None:
     """
     if _UNLIKE.search(remark):
         return None
+    if (stated := _STATEMENT.match(remark)) is not None:
+        return _of_statement(stated[1].upper(), stated[2], MM_PER_INCH if inch else 1.0)
+    try:
+        tool = _of_words(remark, inch)
+    except UsageError:
+        return None
+    if tool is None:
+        return None
+    teeth = int(found[1]) if (found := _TEETH.search(remark)) else 0
+    return replace(tool, left_hand=_LEFT_HAND.search(remark) is not None, teeth=teeth)
+
+
+def _of_words(remark: str, inch: bool) -> Tool | None:
+    """Return the tool of a size beside a word for a kind, of `D=`, or of `DIA` where the remark names the tool."""
     kind = next((kind for pattern, kind in _KINDS if pattern.search(remark)), None)
     size = _diameter_mm(remark, inch)
-    if size is None or (kind is None and not _DIAMETER.search(remark)):
+    is_named = tool_number(remark) is not None and _OF_NAMED.search(remark) is not None
+    if size is None or (kind is None and not is_named and not _DIAMETER.search(remark)):
         return None
     corner = float(found[1]) * (MM_PER_INCH if inch else 1.0) if (found := _CORNER.search(remark)) else 0.0
     angle = float(found[1] or found[2]) if (found := _ANGLE.search(remark)) else 0.0
@@ -63,11 +91,7 @@ def tool_of_remark(remark: str, *, inch: bool = False) -> Tool | None:
         angle *= 2.0  # chamfering tools are named by their flank, V-bits and countersinks by their point
     if kind is ToolKind.FLAT and corner > 0.0:
         kind = ToolKind.BALL if corner >= 0.5 * size else ToolKind.BULL
-    try:
-        tool = _tool(kind, size, corner, angle)
-    except UsageError:
-        return None
-    return replace(tool, left_hand=True) if tool is not None and _LEFT_HAND.search(remark) else tool
+    return _tool(kind, size, corner, angle)
 
 
 def _tool(kind: ToolKind, size: float, corner: float, angle: float) -> Tool | None:
@@ -84,7 +108,31 @@ def _tool(kind: ToolKind, size: float, corner: float, angle: float) -> Tool | No
             return Tool(kind, size)
 
 
+def _of_statement(kind: str, numbers: str, unit_mm: float) -> Tool | None:
+    """Return the tool of a statement that viewers of programs read: `TOOL/MILL,diameter,corner,height,flank`."""
+    try:
+        found = [float(each) for each in numbers.split(",")]
+        size, second, height, flank = (*found, 0.0, 0.0, 0.0)[:4]
+        size, height = size * unit_mm, height * unit_mm
+        if kind != "MILL":
+            return Tool(ToolKind[kind], size, angle_deg=second)
+        if flank > 0.0:  # the diameter is that of the end
+            wide = size + 2.0 * height * math.tan(math.radians(flank))
+            return Tool(ToolKind.TAPER, wide, angle_deg=flank, tip_mm=size)
+        corner = second * unit_mm
+        if corner >= _ALL_ROUND * size:
+            return Tool(ToolKind.BALL, size)
+        return Tool(ToolKind.BULL, size, corner_mm=corner) if corner > 0.0 else Tool(ToolKind.FLAT, size)
+    except (ValueError, UsageError):
+        return None
+
+
 def _diameter_mm(remark: str, inch: bool) -> float | None:
     if found := _DIAMETER.search(remark):
-        return float(found[1]) * (MM_PER_INCH if inch else 1.0)
-    return size_mm(_NUMBERED.sub("", remark), inch=inch)
+        in_inches = found[2].lower() == "in" if found[2] else inch
+        return float(found[1]) * (MM_PER_INCH if in_inches else 1.0)
+    rest = _NUMBERED.sub("", remark)
+    named = _OF_NAMED.search(rest) if rest != remark or _NOUN.search(rest) else None
+    if named is not None and (size := named[1] or named[2]):
+        return float(size) * (MM_PER_INCH if inch else 1.0)
+    return size_mm(rest, inch=inch)

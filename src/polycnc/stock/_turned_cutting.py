@@ -11,10 +11,11 @@ from polycnc.stock._contacts import Contact, ContactKind
 from polycnc.stock._cutting import CHORD_SHARE
 from polycnc.stock._rows import Rows
 from polycnc.stock._sweep import AT_X, AT_Y, DEPTH_MM, VOLUME_MM3
+from polycnc.stock._tally import Tally
 from polycnc.stock._tool import Tool
 from polycnc.stock._voxel_sweep import AT_Z, VOXEL_FIGURES, sweep_voxels
 from polycnc.stock._voxels import Voxels
-from polycnc.stock._ways import Tally, Ways, WaysOfRows
+from polycnc.stock._ways import Ways, WaysOfRows
 
 Floats = npt.NDArray[np.float64]
 
@@ -32,7 +33,9 @@ class TurnedCutting:
         self.stock = stock
         self.tally = Tally()
         self._tools = tools
-        self._ways = WaysOfRows(CHORD_SHARE * stock.cell_mm)
+        self._ways = WaysOfRows(
+            CHORD_SHARE * stock.cell_mm, {number: tool.radius_mm for number, tool in tools.items()}
+        )
         low, high = np.array(stock.box.low), np.array(stock.box.high)
         self._reach_mm = float(np.linalg.norm(high - low))
 
@@ -41,7 +44,7 @@ class TurnedCutting:
         for ways in self._ways.of(rows):
             tool = self._tools.get(ways.number)
             if tool is None:
-                self.tally.unknown_tools.add(ways.number)
+                self.tally.miss(ways)
             else:
                 self._sweep(ways, tool)
 
@@ -54,7 +57,7 @@ class TurnedCutting:
         if ways.rapid:
             self._note(ContactKind.RAPID, ways, self._figures(ways, core, rim, height - rim, cuts=False), rim)
         cut = self._figures(ways, outline.rows, 0.0, height, cuts=True)
-        self.tally.count(ways, cut[:, VOLUME_MM3])
+        self.tally.count(ways, cut, tool)
         self._note(ContactKind.FLUTES, ways, cut, tool.flute_mm)
         for kind, steps in (
             (ContactKind.SHANK, tool.shank_profile()),

@@ -15,14 +15,16 @@ from polycnc.stock._insert import Insert, InsertKind
 from polycnc.stock._insert_sweep import sweep_insert
 from polycnc.stock._rows import Rows
 from polycnc.stock._sweep import AT_X, AT_Y, DEPTH_MM, FIGURES, VOLUME_MM3
+from polycnc.stock._tally import Tally
 from polycnc.stock._tool import Tool
 from polycnc.stock._turned import Turned
-from polycnc.stock._ways import Tally, Ways, WaysOfRows, runs
+from polycnc.stock._ways import Ways, WaysOfRows, runs
 
 Floats = npt.NDArray[np.float64]
 
 _ON_AXIS_MM = 0.01
 _DRILL_STEPS = 400
+_LONGEST_MM = 2.0  # of a way
 
 
 class TurningCutting:
@@ -36,14 +38,14 @@ class TurningCutting:
         self.stock = stock
         self.tally = Tally()
         self._tools = tools
-        self._ways = WaysOfRows(CHORD_SHARE * stock.cell_mm)
+        self._ways = WaysOfRows(CHORD_SHARE * stock.cell_mm, dict.fromkeys(tools, _LONGEST_MM))
 
     def add(self, rows: Rows) -> None:
         """Take the next rows; the tool comes from where the last ones ended."""
         for ways in self._ways.of(rows):
             tool = self._tools.get(ways.number)
             if tool is None:
-                self.tally.unknown_tools.add(ways.number)
+                self.tally.miss(ways)
             elif isinstance(tool, Tool):
                 self._drill(ways, tool)
             else:
@@ -64,7 +66,7 @@ class TurningCutting:
             self._thread(ways, insert, outline, places, figures)
         else:
             self._sweep(insert, outline, places[:-1], places[1:], figures, cuts=True)
-        self.tally.count(ways, figures[:, VOLUME_MM3])
+        self.tally.count(ways, figures, insert)
         self._note(ContactKind.HOLDER, ways, self._held(insert, places), least)
         if not ways.rapid:
             at_rest = ways.rows.turns[ways.ends] == 0.0
@@ -148,7 +150,7 @@ class TurningCutting:
         least = LEAST_DEPTH_SHARE * stock.cell_mm
         if ways.rapid:
             self._note(ContactKind.RAPID, ways, figures, least)
-        self.tally.count(ways, figures[:, VOLUME_MM3])
+        self.tally.count(ways, figures, tool)
         self._note(ContactKind.FLUTES, ways, holes, tool.flute_mm)
         if not ways.rapid:
             figures[ways.rows.turns[ways.ends] != 0.0, DEPTH_MM] = 0.0

@@ -1,8 +1,8 @@
-"""A record as ways of one tool each, and what they remove, added up."""
+"""A record as ways of one tool each."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from itertools import pairwise
 
@@ -10,7 +10,6 @@ import numpy as np
 import numpy.typing as npt
 
 from polycnc.stock._chords import find_chords
-from polycnc.stock._contacts import Contacts, Idle
 from polycnc.stock._rows import Rows, joined
 
 Floats = npt.NDArray[np.float64]
@@ -53,31 +52,15 @@ class Ways:
         return self.rows.t_s[self.ends] - self.rows.t_s[self.begins]
 
 
-class Tally:
-    """Add up what blocks and tools remove, and keep what goes wrong."""
-
-    def __init__(self) -> None:
-        self.by_block_mm3 = np.zeros(0)
-        self.by_tool_mm3: dict[int, float] = {}
-        self.contacts = Contacts()
-        self.unknown_tools: set[int] = set()
-        self.idle: list[Idle] = []
-        self.idle_s = 0.0
-
-    def count(self, ways: Ways, volume_mm3: Floats) -> None:
-        """Count what each way has removed."""
-        blocks = ways.block
-        if len(self.by_block_mm3) <= blocks.max():
-            self.by_block_mm3 = np.concatenate((self.by_block_mm3, np.zeros(int(blocks.max()) + 1)))
-        np.add.at(self.by_block_mm3, blocks, volume_mm3)
-        self.by_tool_mm3[ways.number] = self.by_tool_mm3.get(ways.number, 0.0) + float(volume_mm3.sum())
-
-
 class WaysOfRows:
-    """Make ways of pieces of a record; the tool comes from where the last piece ended."""
+    """Make ways of pieces of a record; the tool comes from where the last piece ended.
 
-    def __init__(self, tolerance_mm: float) -> None:
+    At a feed a way is at most about as long as `longest_mm` says of its tool, so that what it meets is known over time.
+    """
+
+    def __init__(self, tolerance_mm: float, longest_mm: Mapping[int, float]) -> None:
         self._tolerance_mm = tolerance_mm
+        self._longest_mm = longest_mm
         self._last: Rows | None = None  # one row
 
     def of(self, rows: Rows) -> Iterator[Ways]:
@@ -87,7 +70,7 @@ class WaysOfRows:
         rows = rows if self._last is None else joined([self._last, rows])
         self._last = rows.at(np.array([len(rows.t_s) - 1]))
         ends = np.zeros(len(rows.t_s), np.int64)
-        count = find_chords(rows.guides(), rows.keys(), self._tolerance_mm, ends)
+        count = find_chords(rows.guides(), self._keys(rows), self._tolerance_mm, ends)
         nodes = np.concatenate(([0], ends[:count]))
         tool, rapid = rows.tool[nodes], rows.rapid[nodes]
         # Another tool has not come that way.
@@ -98,6 +81,14 @@ class WaysOfRows:
             if way[first] >= 0:
                 places = np.ascontiguousarray(rows.tip[nodes[first : last + 1]])
                 yield Ways(places, nodes[first + 1 : last + 1], nodes[first:last], rows)
+
+    def _keys(self, rows: Rows) -> Integers:
+        """Return a number for each row that changes where one way must not go on."""
+        step = np.where(rows.rapid[1:], 0.0, np.linalg.norm(np.diff(rows.tip, axis=0), axis=1))
+        numbers, of = np.unique(rows.tool, return_inverse=True)
+        longest = np.array([self._longest_mm.get(number, np.inf) for number in numbers.tolist()])[of]
+        piece = np.floor(np.concatenate(([0.0], np.cumsum(step))) / longest)
+        return rows.keys() + np.concatenate(([0], np.cumsum(piece[1:] != piece[:-1])))
 
 
 def runs(values: Integers) -> Iterator[tuple[int, int]]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from itertools import pairwise
 from pathlib import Path
 
@@ -10,16 +11,19 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+import polycnc
 from polycnc.errors import UsageError
 from polycnc.stock import (
     Box,
     Course,
     Cutting,
     Form,
+    Mesh,
     Rows,
     Stock,
     Tool,
     ToolKind,
+    stock_of_remarks,
     tool_number,
     tool_of_remark,
 )
@@ -222,11 +226,37 @@ UNLIKE = ("probe", "thread mill", "T-slot mill", "dovetail mill", "lollipop mill
         ("Hole, end mill 8 mm on a helix", Tool(ToolKind.FLAT, 8.0)),
         ("T1 D=0. - flat end mill", None),
         ("Pocket 32 mm wide", None),
+        ("T2 = End Mill {0.5 inches}", Tool(ToolKind.FLAT, 12.7)),
+        ("T1 - 3/8 FLAT ENDMILL - H1", Tool(ToolKind.FLAT, 9.525)),
+        ("POCKET 1/2 SLOT", None),
+        ("TOOL 1 - DIA 12.", Tool(ToolKind.FLAT, 12.0)),
+        ("TOOL - 4 DIA. OFF. - 4 LEN. - 4 DIA. - 6.5", Tool(ToolKind.FLAT, 6.5)),
+        ("T1 offset 25 mm", None),
+        ("POCKET DIA 40", None),
+        ("TOOL/MILL,3.17, 0.00, 0.00, 0.00", Tool(ToolKind.FLAT, 3.17)),
+        ("TOOL/MILL,6.35, 3.17, 0.00, 0.00", Tool(ToolKind.BALL, 6.35)),
+        ("TOOL/MILL,8, 1.5, 20, 0", Tool(ToolKind.BULL, 8.0, corner_mm=1.5)),
+        ("TOOL/MILL,2, 0, 10, 45", Tool(ToolKind.TAPER, 22.0, angle_deg=45.0, tip_mm=2.0)),
+        ("TOOL/DRILL,6,118,20", Tool(ToolKind.DRILL, 6.0, angle_deg=118.0)),
+        ("TOOL/MILL,nan,0,0,0", None),
         ("Finish everything", None),
     ],
 )
 def test_tools_in_remarks(remark: str, tool: Tool | None) -> None:
-    assert tool_of_remark(remark) == tool
+    found = tool_of_remark(remark)
+    assert found == (tool if found is None or tool is None else replace(tool, diameter_mm=found.diameter_mm))
+    assert found is None or found.diameter_mm == pytest.approx(tool.diameter_mm if tool else 0.0)
+
+
+def test_numbers_of_tools_in_remarks() -> None:
+    named = {
+        "5 = End Mill {0.25 inches}": 5,
+        "TOOL - 4 DIA. OFF. - 4": 4,
+        "T12 D=6": 12,
+        "T 1/4 mill": None,
+        "5 = 3": None,
+    }
+    assert {remark: tool_number(remark) for remark in named} == named
 
 
 def test_remarks_in_inches() -> None:
@@ -243,3 +273,88 @@ def test_remarks_in_inches() -> None:
 def test_any_remark_is_a_tool_or_none(remark: str) -> None:
     found = tool_of_remark(f"T1 D=6 {remark} mill")
     assert found is None or found.diameter_mm > 0.0
+
+
+VECTRIC = [
+    "Material Size",
+    " X= 120.000, Y= 80.000, Z= 18.000",
+    " Z Origin for Material  = Material Surface",
+    " XY Origin for Material = Center",
+    "      XY Origin Position  = X:0.000, Y:0.000",
+]
+
+
+@pytest.mark.parametrize(
+    ("remarks", "inch", "form"),
+    [
+        (["STOCK box=0, 0,-12,62,41,0"], False, "box=0,0,-12,62,41,0"),
+        (["a remark", " stock cylinder=30,-60,0 "], True, "cylinder=30,-60,0"),
+        (["STOCK/BLOCK,100.00, 90.00, 6.00,0.00, 10.00, 6.00"], False, "box=0,-10,-6,100,80,0"),
+        (["STOCK/BLOCK, 4, 3, 1, 2, 1.5, 1"], True, "box=-50.8,-38.1,-25.4,50.8,38.1,0"),
+        (
+            ["stockMin:0.00mm, -2.50mm, -6.00mm", "stockMax:90.00mm, 60.00mm, 0.00mm"],
+            True,
+            "box=0,-2.5,-6,90,60,0",
+        ),
+        (["stockMin:0in, 0in, -1in", "stockMax:2in, 2in, 0in"], False, "box=0,0,-25.4,50.8,50.8,0"),
+        (VECTRIC, False, "box=-60,-40,-18,60,40,0"),
+        (
+            [
+                *VECTRIC[:2],
+                "Z Origin for Material = Table Surface",
+                "XY Origin for Material = Top Right Corner",
+            ],
+            False,
+            "box=-120,-80,0,0,0,18",
+        ),
+        (VECTRIC[:2], False, None),  # where it lies is not said
+        ([*VECTRIC[:3], "XY Origin for Material = Offset"], False, None),
+        (["stockMin:0mm, 0mm, -6mm"], False, None),
+        (["STOCK/BLOCK,100,90,6"], False, None),
+        (
+            ["STOCK/BLOCK,100,90,x,0,0,0", "STOCK/BLOCK,1e9,1,1,0,0,0", "STOCK/BLOCK,nan,1,1,0,0,0"],
+            False,
+            None,
+        ),
+        (["STOCK box of steel", "STOCK", "stock 20 mm"], False, None),
+    ],
+)
+def test_a_body_in_remarks(remarks: list[str], inch: bool, form: str | None) -> None:
+    assert stock_of_remarks(remarks, inch=inch) == form
+
+
+def test_a_body_is_turned_over_where_it_lies(tmp_path: Path) -> None:
+    """A wedge that is high at low x and y: about X its lower side is up and y is the other way around."""
+    corners = [(0, 0, 0), (30, 0, 0), (30, 20, 0), (0, 20, 0), (0, 0, 9), (30, 0, 3), (30, 20, 1), (0, 20, 7)]
+    faces = [(0, 2, 1), (0, 3, 2), (4, 5, 6), (4, 6, 7), (0, 1, 5), (0, 5, 4)]
+    faces += [(1, 2, 6), (1, 6, 5), (2, 3, 7), (2, 7, 6), (3, 0, 4), (3, 4, 7)]
+    path = tmp_path / "wedge.stl"
+    Mesh(np.array(corners, np.float64), np.array(faces)).write(path)
+    course = Rows(
+        np.zeros(0), np.zeros((0, 3)), *(np.zeros(0, np.int64),) * 2, np.zeros(0, bool), np.zeros(0)
+    )
+    upright = Form(str(path), 0.5).body(course, {})
+    assert upright.height(2.25, 2.25) == pytest.approx(9.0 - 6.0 * 2.25 / 30.0 - 2.0 * 2.25 / 20.0, abs=0.3)
+    for axis in "xy":
+        over = Form(f"{axis}-turned={path}", 0.5).body(course, {})
+        assert (over.box.low, over.box.high) == (upright.box.low, upright.box.high)
+        assert over.heights == pytest.approx(9.0)  # its flat side; below it counts as full
+        turned = np.array(corners, np.float64)
+        for i in (1 if axis == "x" else 0, 2):
+            turned[:, i] = (30.0, 20.0, 9.0)[i] - turned[:, i]
+        Mesh(turned, np.array(faces)).write(tmp_path / "over.stl")
+        back = Form(f"{axis}-turned={tmp_path / 'over.stl'}", 0.5).body(course, {})
+        assert back.heights == pytest.approx(upright.heights, abs=1e-5)
+    with pytest.raises(UsageError, match="cannot read 'z-turned"):
+        Form("z-turned=part.stl").body(course, {})
+
+
+def test_a_remark_says_what_auto_is() -> None:
+    text = "(T1 D=6 flat end mill)\n(STOCK box=-3,-4,-5,31,21,2)\nT1 M6\nS900 M3\nG0 Z9\nG1 Z-1 F500\nX20\nG0 Z9\nM30\n"
+    machined = polycnc.run(text, "mill3", "fanuc", stock="auto", resolution_mm=1.0).machined
+    assert machined is not None
+    assert machined.stock.box == Box((-3.0, -4.0, -5.0), (31.0, 21.0, 2.0))
+    assert machined.messages[0].endswith("1 mm a cell, as '<text>' says")
+    given = polycnc.run(text, "mill3", "fanuc", stock="box=0,-4,-5,31,21,2", resolution_mm=1.0).machined
+    assert given is not None
+    assert given.stock.box.low[0] == 0.0

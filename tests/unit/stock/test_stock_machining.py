@@ -248,3 +248,59 @@ def test_a_boring_bar_retracts_off_the_wall(tool: str, cycle: str, lines: list[i
         assert result.machined is not None
         bored = math.pi * (9.0**2 * 20.0 + (10.0**2 - 9.0**2) * 12.0)
         assert result.removed_mm3 == pytest.approx(bored, rel=0.003)
+
+
+HANDED = {  # how programs say the one tool that they never change: what is removed of 4 mm, along 30 mm
+    "a T word alone": ("(T1  D=6 CR=0 - ZMIN=-4 - flat end mill)\nT1", 6.0),
+    "a tool in a remark": (
+        "(6mm Endmill003)\n( M6 T2 )\n(Compensated Tool Path. Diameter: 6.0)",
+        6.0,
+    ),
+    "its diameter in words": ("( Tool 5: End Mill 3 Flutes, Diam = 8mm, Len = 20.00mm)", 8.0),
+    "after the T word": ("T1\nM5\n(MSG, Change tool bit to cutter diameter 0.25in)\nM6\nM0", 6.35),
+    "before M6 and T": ("(TC: 6mm Endmill)\nM5\nM6 T3", 6.0),
+    "two tools, no word which": ("(6mm Endmill)\n(8mm Endmill)", None),
+    "nothing": ("(Use a V Bit)", None),
+}
+
+
+@pytest.mark.parametrize("how", HANDED)
+def test_programs_that_never_change_the_tool(how: str) -> None:
+    said, diameter = HANDED[how]
+    text = f"{said}\nG21 G90\nM3 S9000\nG0 X5 Y12\nZ5\nG1 Z-4 F300\nX35\nG0 Z5\nM30\n"
+    config = load_machine("mill3")
+    collector = runner.MachiningCollector(config)
+    runner.run(text, config, "din", tagged_rows=collector.add, check=False)
+    found = collector.machined(Form("box=0,0,-12,60,42,0", 0.1))
+    area = 0.0 if diameter is None else 30.0 * diameter + math.pi * diameter**2 / 4.0
+    assert found.volume_mm3 == pytest.approx(4.0 * area, rel=1e-2)
+    assert found.collisions == []
+    assert any(message.startswith("no tool is in the spindle") for message in found.messages) == (
+        diameter is None
+    )
+
+
+def test_rapids_into_what_pecks_have_cut_leave_an_auto_body_whole() -> None:
+    """Pecks with G0 at two corners: a hole that is there already is no place beside the body."""
+    peck = "G1 Z-3 F300\nG0 Z-2\nG1 Z-6\nG0 Z3\nZ-5\nG1 Z-8\nG0 Z3\n"
+    text = f"(T1 D=4 drill)\nT1 M6\nS900 M3\nG0 X70 Y40\nZ3\n{peck}X40 Y70\n{peck}M30\n"
+    found = machined(text, form="auto")
+    assert found.stock.box.low == pytest.approx((37.0, 37.0, -9.0))
+    assert found.stock.box.high == pytest.approx((73.0, 73.0, 0.0))
+    assert found.collisions == []
+    depth = 8.0 - 2.0 / math.tan(math.radians(59.0)) * 2.0 / 3.0
+    assert found.volume_mm3 == pytest.approx(2.0 * math.pi * 4.0 * depth, rel=0.05)
+
+
+@pytest.mark.parametrize(
+    ("start", "kinds"),
+    [
+        ("G0 X20 Y20\nZ10", []),  # where the machine was before it has come down is not known
+        ("G53 G0 Z0\nG0 X20 Y20\nZ10", []),
+        ("G0 Z10\nX20 Y20", []),
+        ("G0 Z10\nX-20 Y20\nZ-3\nX20", [ContactKind.RAPID]),
+    ],
+)
+def test_a_machine_that_starts_within_the_stock(start: str, kinds: list[ContactKind]) -> None:
+    text = f"(T1 D=6 flat end mill)\nT1 M6\nS900 M3\n{start}\nG0 Z9\nG1 Z-2 F500\nX30\nG0 Z20\nM30\n"
+    assert [each.kind for each in machined(text, form="box=-5,-5,-12,60,42,4").collisions] == kinds

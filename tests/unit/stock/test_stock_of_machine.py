@@ -53,11 +53,11 @@ def test_the_machine_file_says_what_is_cut(
     ("told", "tool", "width_mm"),
     [
         ("(Tool: end mill 10 mm)", "", 10.0),
-        ("(6 mm end mill)\n(then a drill of 3 mm)", "", 6.0),
+        ("(6 mm end mill)\n(then a drill of 3 mm)", "", 0.0),
         ("(T7 D=8. CR=0. - flat end mill)", "", 8.0),
         ("", "[tools.3]\nradius_mm = 4\n", 8.0),
         ("(T7 D=8. CR=0. - flat end mill)\n(T8 D=9. CR=0. - flat end mill)", "", 0.0),
-        ("T5 M6\n(end mill 10 mm)", "", 0.0),
+        ("T5\n(end mill 10 mm)", "", 0.0),
         ("(finish)", "", 0.0),
     ],
 )

@@ -17,6 +17,7 @@ from polycnc.runner._outcome import RunOutcome, counted, time_text
 from polycnc.runner._rotation import turning_axes
 from polycnc.runner.view._film import Film, film_of
 from polycnc.runner.view._listing import Listing
+from polycnc.runner.view._load import loads
 from polycnc.runner.view._motion import DERIVATIVES
 from polycnc.runner.view._part_frame import with_part_frame
 from polycnc.runner.view._picture import Axes, columns_of, kinematics, places, tool_shapes, zero_of_work
@@ -82,11 +83,20 @@ def page(
         "inch": programmed_inch if inch is None else inch,
         "tips": columns_of(axes) if "tip" not in columns else None,
         "chain": kinematics(machine) if "tip" in columns else [],
-        "shapes": tool_shapes(sorted(set(track.blocks.tool.tolist())), machine, texts),
+        "shapes": tool_shapes(
+            sorted(set(track.blocks.tool.tolist())),
+            machine,
+            texts,
+            None if result.machined is None else result.machined.tools,
+        ),
         "lathe": _is_lathe(axes, machine),
     }
     if result.machined is not None:
         about["stock"] = _stock(film_of(result.machined), result.machined.zero_mm, columns)
+        found, about["load_s"] = loads(
+            result.machined.engagement, float(track.t_s[-1]) if len(track.t_s) else 0.0
+        )
+        columns |= {f"load_{name}": each for name, each in found.items()}
     blob, about["columns"] = _packed(columns)
     shell = Page(_own("page.html"), _own("page.css"), "view.js", _modules(), "polycnc view")
     title = result.program.encode("utf-8", "replace").decode()
@@ -102,13 +112,12 @@ def _stock(
     columns["stock_counts"] = film.counts
     columns["stock_cells"] = np.diff(film.cells, prepend=np.int32(0)).astype(np.int32)
     columns["stock_levels"] = film.levels
-    x, y, z = zero_mm
     return {
-        "first": [film.first_mm[0] + x, film.first_mm[1] + y],
-        "bottom": film.bottom_mm + z,
+        "kind": film.kind,
+        "first": [first + zero for first, zero in zip(film.first_mm, zero_mm, strict=True)],
         "cell": film.cell_mm,
-        "level": film.level_mm,
-        "size": [film.begin.shape[1], film.begin.shape[0]],
+        "level": film.level,
+        "size": list(film.begin.shape[::-1]),
     }
 
 

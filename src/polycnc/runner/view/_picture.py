@@ -12,9 +12,10 @@ from polycnc.machine import MachineConfig, ToolConfig
 from polycnc.nc import ProgramText, Zero
 from polycnc.runner._rotation import turning_axes
 from polycnc.runner._stock_tools import tools_of
+from polycnc.runner._turning_tools import turning_tools_of
 from polycnc.runner.view._part_frame import hang_mm, on_part
 from polycnc.runner.view._track import Track
-from polycnc.stock import Tool
+from polycnc.stock import Insert, Tool
 
 Floats = npt.NDArray[np.float64]
 Axes = tuple[tuple[str, str], ...]
@@ -22,6 +23,7 @@ Axes = tuple[tuple[str, str], ...]
 _PLACES = "XYZ"
 _STEPS = 12  # of a rounded end
 _SHAFT_DIAMETERS = 3.0  # that a tool is drawn long where its flutes are not known
+_LONGEST_EDGE_MM = 15.0  # of an insert
 
 
 def places(track: Track, axes: Axes, machine: MachineConfig | None) -> Floats:
@@ -89,18 +91,31 @@ def kinematics(machine: MachineConfig | None) -> list[dict[str, Any]]:
 
 
 def tool_shapes(
-    numbers: list[int], machine: MachineConfig | None, texts: Mapping[str, ProgramText]
+    numbers: list[int],
+    machine: MachineConfig | None,
+    texts: Mapping[str, ProgramText],
+    known: Mapping[int, Tool | Insert] | None = None,
 ) -> dict[str, dict[str, Any]]:
-    """Return by number how tools look: outline (radius, height) from the tip to the shaft, and the holder."""
+    """Return by number how tools look: outline (radius, height) from the tip to the shaft, and the holder.
+
+    They are those of machine and programs, or those that are `known`. Inserts of a lathe have a plate (X, Z), from the
+    point that programs guide.
+    """
     if machine is None:
         return {}
-    known = tools_of(machine, texts)
+    if known is None:
+        known = (
+            turning_tools_of(machine, texts) if "Y" not in machine.axis_names else tools_of(machine, texts)
+        )
     shapes = {}
     for number in numbers:
         at = machine.tools.get(number, ToolConfig())
         shape: dict[str, Any] = {"hang": hang_mm(at), "tip": at.tip, "name": at.description}
-        if number in known:
-            shape |= _outline(known[number])
+        tool = known.get(number)
+        if isinstance(tool, Tool):
+            shape |= _outline(tool)
+        elif tool is not None:
+            shape["plate"] = tool.plate(_LONGEST_EDGE_MM)
         shapes[str(number)] = shape
     return shapes
 

@@ -1,29 +1,5 @@
 // What a page saves: its body as STL or 3MF (core specification, mm), its picture as PNG.
 
-// The closed surface of a height field: heights at the middles of the cells, walls a cell wide, upright sides.
-export function surface({ heights, size: [nx, ny], cell, place }) {
-  const wide = nx + 4, high = ny + 4, count = wide * high, along = (i, n) => (i < 2 ? -0.5 : i > n + 1 ? n - 0.5 : i - 2);
-  const inner = (i, n) => Math.min(Math.max(i - 2, 0), n - 1), z = new Float64Array(count), number = new Int32Array(2 * count).fill(-1);
-  for (let j = 1; j < high - 1; j++) for (let i = 1; i < wide - 1; i++) z[j * wide + i] = Math.max(heights[inner(j, ny) * nx + inner(i, nx)], 0);
-  const vertices = [], faces = [];
-  const vertex = (at, below) => { // where the top lies on the bottom both share a corner
-    const key = below && z[at] > 0 ? at + count : at;
-    if (number[key] < 0) {
-      number[key] = vertices.length / 3;
-      vertices.push(place[0] + cell * along(at % wide, nx), place[1] + cell * along(Math.floor(at / wide), ny), place[2] + (below ? 0 : z[at]));
-    }
-    return number[key];
-  };
-  for (let j = 1; j < high; j++) for (let i = 1; i < wide; i++) {
-    const c = j * wide + i, d = c - 1, b = c - wide, a = b - 1;
-    for (const corners of [[a, b, c], [a, c, d]]) {
-      if (corners.every((at) => z[at] <= 0)) continue;
-      faces.push(...corners.map((at) => vertex(at, false)), ...corners.reverse().map((at) => vertex(at, true)));
-    }
-  }
-  return { vertices, faces };
-}
-
 export function stl({ vertices, faces }) {
   const count = faces.length / 3, data = new DataView(new ArrayBuffer(84 + 50 * count));
   [..."polycnc"].forEach((letter, i) => data.setUint8(i, letter.charCodeAt(0)));

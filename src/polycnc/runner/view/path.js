@@ -90,10 +90,27 @@ export class Path {
     return Object.assign(lines, { box: [0, 1, 2].map((i) => [Math.min(...cut.map((at) => at[i])), Math.max(...cut.map((at) => at[i]))]) });
   }
 
+  // The greatest of stretches of equal length that a point's piece of the path covers.
+  ofPoints(load) {
+    const { record } = this, found = new Float32Array(record.points);
+    for (let k = 1; k < record.points; k++) {
+      const last = Math.min(Math.ceil(record.t_s[k] / load.stretch_s), load.values.length);
+      for (let n = Math.floor(record.t_s[k - 1] / load.stretch_s + 1e-6); n < last; n++) found[k] = Math.max(found[k], load.values[n]);
+    }
+    return found;
+  }
+
+  // The colour (r, g, b) of a moment by a way of colouring; how hard tools cut is known more finely than by points.
+  colouringAt(how) {
+    const { record } = this, load = record.loads[how], of = load ? null : this.colouring(how);
+    return (t) => (load ? scaled(load.at(t - 1e-6) / load.top) : of(Math.min(after(record.t_s, t - 1e-6), record.points - 1)));
+  }
+
   // The colour (r, g, b) of a point by a way of colouring.
   colouring(how) {
     const { record } = this, classes = (of) => (k) => rgb(paletteColour(of(k)));
-    const [low, high] = this.depths;
+    const [low, high] = this.depths, load = record.loads[how];
+    if (load) { const values = load.points ??= this.ofPoints(load); return (k) => scaled(values[k] / load.top); }
     return {
       power: (k) => scaled(record.power[k] / this.topPower),
       speed: (k) => scaled(record.feed[k] / this.usualFeed),

@@ -10,6 +10,11 @@ export class Record {
     for (const [name, at] of Object.entries(this.about.columns)) this[name] = new ARRAYS[at.type](buffers.data, at.at, at.length);
     this.points = this.t_s.length;
     this.executions = this.start_s.length;
+    this.loads = {}; // how hard tools cut, in stretches of equal length
+    for (const name of ["rate", "axial", "radial", "chip"]) {
+      const values = this[`load_${name}`], stretch_s = this.about.load_s;
+      if (values) this.loads[name] = { values, stretch_s, top: values.reduce((top, value) => Math.max(top, value), 1e-9), at: (t) => values[Math.min(Math.max(Math.floor(t / stretch_s), 0), values.length - 1)] };
+    }
     this.end_s = this.points ? this.t_s[this.points - 1] : 0;
     this.axes = this.about.axes;
     this.blockAt = new Int32Array(this.points); // the execution of each point

@@ -2,16 +2,18 @@
 import { Group, Matrix4, Vector3 } from "three";
 import { Chart } from "./chart.js";
 import { Field } from "./field.js";
-import { save, stl, surface, threeMf } from "./files.js";
+import { save, stl, threeMf } from "./files.js";
 import { floor } from "./floor.js";
 import { after, clockText, units } from "./format.js";
 import { polyline } from "./lines.js";
 import { Listing } from "./listing.js";
 import { Path } from "./path.js";
 import { Record } from "./record.js";
+import { Solid } from "./solid.js";
 import { directions, Stage } from "./stage.js";
 import { begin, css, paletteColour, rgb, scaleColours, turnOver } from "./theme.js";
 import { toolShape } from "./tool_shape.js";
+import { Turned } from "./turned.js";
 
 const element = (id) => document.getElementById(id);
 const make = (tag, properties) => Object.assign(document.createElement(tag), properties);
@@ -20,7 +22,7 @@ export async function start(buffers) {
   const record = new Record(buffers), { about } = record, unit = units(about.inch), lathe = about.lathe;
   begin();
   const path = new Path(record);
-  const stage = new Stage(element("stage"), { flat: Boolean(lathe) });
+  const stage = new Stage(element("stage"), { flat: Boolean(lathe) && !about.stock });
   stage.reach = 2 * Math.max(...path.all.flat().map(Math.abs), 1) + 100;
   const say = (text) => { element("status").textContent = text; };
   const part = new Group(), carried = new Group(); // what turns with a table, and the tool
@@ -28,17 +30,17 @@ export async function start(buffers) {
   stage.scene.add(part, carried);
   part.add(path.rapids.mesh, path.cuts.mesh);
   let mirrored = null;
-  if (lathe) { // a full profile: the same below the axis of the spindle
+  if (lathe && !about.stock) { // a full profile: the same below the axis of the spindle
     mirrored = path.cuts.mesh.clone();
     mirrored.scale.z = -1;
     part.add(mirrored);
   }
-  const body = about.stock && bodyOf(record);
+  const body = about.stock && bodyOf(record, path);
   if (body) {
     part.add(body.mesh);
     stage.before.push(() => body.seenFrom(stage.camera.position, stage.controls.target));
     path.cuts.set("width", 1.4);
-    path.box = path.box.map(([low, high], i) => [Math.min(low, body.box[i][0]), i === 2 ? Math.max(body.box[2][1], Math.min(high, body.box[2][1] + 5)) : Math.max(high, body.box[i][1])]);
+    path.box = path.box.map(([low, high], i) => [Math.min(low, body.box[i][0]), i === 2 && !lathe ? Math.max(body.box[2][1], Math.min(high, body.box[2][1] + 5)) : Math.max(high, body.box[i][1])]);
   }
   const rest = path.rest(); // what could be read after an alarm
   if (rest) { rest.material.depthTest = !body; part.add(rest.mesh); path.box = path.box.map(([low, high], i) => [Math.min(low, rest.box[i][0]), Math.max(high, rest.box[i][1])]); }
@@ -78,11 +80,14 @@ export async function start(buffers) {
     shownTool = number;
     if (tool) carried.remove(tool);
     tool = toolShape(about.shapes[String(number)], 0.16 * longest, paletteColour(path.tools.indexOf(number)));
-    if (lathe) tool.rotation.set(0, 0, 0);
+    if (lathe && about.shapes[String(number)]?.outline) tool.rotation.y = Math.PI / 2; // what rotates lies along the axis
     carried.add(tool);
   }
 
   // ---------------------------------------------------------------- colours
+  const LOADS = { rate: "removal", axial: "cut depth", radial: "cut width", chip: "chip" }, loaded = Object.keys(record.loads);
+  const loadText = (name, value) => (name === "rate" ? unit.rate(value) : unit.length(value));
+  loaded.forEach((name) => element("colour").add(new Option(LOADS[name], name)));
   const chip = (colour, text, name = "") => {
     const mark = make("i", { className: name }), entry = make("div", {});
     if (colour) mark.style.background = colour;
@@ -92,10 +97,10 @@ export async function start(buffers) {
   function drawLegend() {
     const legend = element("legend"), how = element("colour").value;
     legend.replaceChildren();
-    if (how === "speed" || how === "depth" || how === "power") {
+    if (["speed", "depth", "power"].includes(how) || record.loads[how]) {
       const bar = make("div", { className: "scale" }), ends = make("div", { className: "ends" }), [low, high] = path.depths;
       bar.style.background = `linear-gradient(to right, ${scaleColours().join(",")})`;
-      const texts = how === "power" ? ["0", `S${+path.topPower.toFixed(1)}`] : how === "speed" ? ["0", `${path.usualFeed < 0.99 * path.topFeed ? "≥ " : ""}${unit.feed(path.usualFeed)}`] : [unit.length(low), unit.length(high)];
+      const texts = record.loads[how] ? ["0", loadText(how, record.loads[how].top)] : how === "power" ? ["0", `S${+path.topPower.toFixed(1)}`] : how === "speed" ? ["0", `${path.usualFeed < 0.99 * path.topFeed ? "≥ " : ""}${unit.feed(path.usualFeed)}`] : [unit.length(low), unit.length(high)];
       ends.append(...texts.map((textContent) => make("span", { textContent })));
       legend.append(bar, ends);
     } else if (how === "tool") path.tools.forEach((number, i) => legend.append(chip(paletteColour(i), `T${number}`)));
@@ -109,10 +114,10 @@ export async function start(buffers) {
     if (about.other) legend.append(chip(paletteColour(0), about.other.own), chip(css("--other"), about.other.name));
   }
   function recolour() {
-    const how = element("colour").value, of = path.colouring(how);
+    const how = element("colour").value;
     path.paint(how);
     rest?.paint(() => rgb(css("--rest"))); rest?.paper(css("--paper"));
-    if (body) body.paint((t) => of(Math.min(after(record.t_s, t - 1e-6), record.points - 1)));
+    if (body) body.paint(path.colouringAt(how));
     drawLegend(); stage.draw();
   }
   function drawBody() { // as cut, or before, after, off; and the section
@@ -132,13 +137,17 @@ export async function start(buffers) {
   const charts = [{ name: "path speed", unit: `${unit.name}/min`, y: () => record.feed.map((f) => f * unit.factor), top: path.topRapid > 2 * path.topFeed && path.cuts.count ? 1.15 * path.topFeed * unit.factor : null, zero: true }];
   for (const { name, i, unit: of } of linearAxes) charts.push({ name: `position ${name}`, unit: of === "deg" ? "°" : unit.name, y: () => record.position.slice(i * record.points, (i + 1) * record.points).map((v) => (of === "deg" ? v : v * unit.factor)) });
   if (record.motion_low) about.derivatives.forEach((what, d) => { for (const { name, i, unit: of } of linearAxes) charts.push({ name: `${what} ${name}`, unit: `${of === "deg" ? "°" : "mm"}/s${["", "²", "³"][d]}`, motion: d * record.axes.length + i }); });
+  for (const name of loaded) charts.push({ name: LOADS[name], unit: name === "rate" ? (about.inch ? "in³/min" : "cm³/min") : unit.name, load: record.loads[name] });
   const chart = new Chart(element("chart"), {
     onTime: (t) => goTo(t),
     colours: () => ({ line: paletteColour(0), band: `${paletteColour(0)}44`, soft: css("--soft"), grid: css("--line"), now: css("--accent") }),
   });
   function drawChart() {
     const each = charts[element("shown").value];
-    if (each.motion === undefined) chart.show({ x: record.t_s, y: each.y(), end: record.end_s || 1, unit: each.unit, top: each.top ?? null, zero: each.zero });
+    if (each.load) {
+      const { values, stretch_s } = each.load, factor = each.load === record.loads.rate ? 60 * (about.inch ? 25.4 ** -3 : 1e-3) : unit.factor;
+      chart.show({ x: Array.from(values, (_, n) => (n + 0.5) * stretch_s), y: Array.from(values, (value) => value * factor), end: record.end_s || 1, unit: each.unit, zero: true });
+    } else if (each.motion === undefined) chart.show({ x: record.t_s, y: each.y(), end: record.end_s || 1, unit: each.unit, top: each.top ?? null, zero: each.zero });
     else {
       const n = record.motion_low.length / (about.derivatives.length * record.axes.length), x = [], y = [];
       for (let k = 0; k < n; k++) for (const side of [record.motion_low, record.motion_high]) { x.push(Math.min((k + (side === record.motion_low ? 0.25 : 0.75)) * about.stretch_s, record.end_s)); y.push(side[each.motion * n + k]); }
@@ -154,7 +163,7 @@ export async function start(buffers) {
     onRow: (row) => { say(""); goToRow(row); },
   });
   const cells = {};
-  for (const name of ["time", "speed", "tool", "line", ...record.axes.map((axis) => axis.name), ...(lathe ? ["⌀"] : [])]) {
+  for (const name of ["time", "speed", "tool", "line", ...record.axes.map((axis) => axis.name), ...(lathe ? ["⌀"] : []), ...loaded.map((each) => LOADS[each])]) {
     const cell = make("dd", {});
     cell.dataset.of = name;
     element("readout").append(make("dt", { textContent: name }), cell);
@@ -177,6 +186,7 @@ export async function start(buffers) {
     if (!record.points) return;
     const here = record.at(now), execution = record.executionAt(now), number = record.toolOf(execution), row = record.rowOf(execution);
     readout(here, execution);
+    for (const name of loaded) { const value = record.loads[name].at(now - 1e-6); cells[LOADS[name]].textContent = value > 0 ? loadText(name, value) : "–"; }
     cells.speed.textContent = unit.feed(here.feed);
     cells.tool.textContent = record.executions ? `T${number}` : "";
     cells.line.textContent = row >= 0 ? record.line[row] : "";
@@ -347,13 +357,14 @@ export async function start(buffers) {
   for (const mark of about.other?.marks ?? []) list(make("button", { type: "button", textContent: `◇ ${mark.text}`, onclick: () => { if (mark.time_s !== null) goTo(mark.time_s); } }));
   if (!record.points) say("The program moves no axis.");
   element("stocks").hidden = element("sections").hidden = !body;
+  if (lathe) ["none", "across", "along"].forEach((name, i) => { element("section").options[i].text = name; });
   if (body && !body.changes) element("stock").value = "off"; // no tool is known: the path says more
   for (const each of element("save").options) each.hidden = each.disabled = !body && ["stl", "3mf"].includes(each.value);
   element("save").onchange = async () => { // the picture, or the body, as it is shown
     const how = element("save").value, name = `${element("title").textContent.replace(/\.[^.]*$/, "") || "part"}.${how}`;
     element("save").value = "";
     if (how === "png") { stage.render(); stage.canvas.toBlob((blob) => save(blob, name)); }
-    else if (how) save(await { stl, "3mf": threeMf }[how](surface(body.solid())), name);
+    else if (how) save(await { stl, "3mf": threeMf }[how](body.surface()), name);
     if (how) say(`${name}${how === "png" ? "" : ", mm from program zero"}`);
   };
   for (const id of ["stock", "section", "cut"]) element(id).oninput = () => drawBody();
@@ -398,10 +409,12 @@ export async function start(buffers) {
   document.documentElement.dataset.ready = "yes";
 }
 
-function bodyOf(record) {
+const BODIES = { field: Field, turned: Turned, solid: Solid };
+
+function bodyOf(record, path) {
   const { stock, zero } = record.about;
-  return new Field({
-    ...stock, place: [stock.first[0] - zero[0], stock.first[1] - zero[1], stock.bottom - zero[2]],
+  return new BODIES[stock.kind]({
+    ...stock, place: path.place(stock.first.map((first, i) => first - zero[i])),
     begin: record.stock_begin, ends: record.stock_s, counts: record.stock_counts, jumps: record.stock_cells, levels: record.stock_levels,
   });
 }

@@ -1,6 +1,6 @@
-// A body that is cut: a height for each cell, and every change with its time. Going back undoes the changes.
-import { BufferAttribute, BufferGeometry, DataTexture, DoubleSide, FloatType, Group, Mesh, NearestFilter, RGBAFormat, RGFormat, ShaderMaterial, Vector2, Vector4 } from "three";
-import { after } from "./format.js";
+// A body seen from above: a height for each cell of a grid.
+import { BufferAttribute, BufferGeometry, DataTexture, DoubleSide, FloatType, Group, NearestFilter, RGFormat, ShaderMaterial, Vector2 } from "three";
+import { Body, LOOK } from "./body.js";
 
 const VERTEX = `
 precision highp sampler2D;
@@ -23,14 +23,13 @@ void main() {
 }`;
 const FRAGMENT = `
 precision highp sampler2D;
-uniform sampler2D colours;
-uniform vec4 section;
 uniform float base;
-uniform vec2 lit, size;
+uniform vec2 size;
 uniform sampler2D field;
 varying vec3 place;
 varying float high;
 varying vec2 cell_at;
+${LOOK}
 vec2 cellOf(vec2 at) { return texelFetch(field, ivec2(clamp(at, vec2(0.0), size - 1.0)), 0).rg; }
 void main() {
   if (dot(section.xyz, place) > section.w) discard;
@@ -48,52 +47,28 @@ void main() {
     if (length(fall) > 1e-6) normal = normalize(vec3(-normalize(fall) * length(normal.xy), abs(normal.z)));
     for (int n = 0; n < 4; n++) stamp = max(stamp, cellOf(corner + vec2(float(n & 1), float(n >> 1))).y);
   }
-  vec3 toward = normalize(vec3(viewMatrix[0].z, viewMatrix[1].z, viewMatrix[2].z));
+  vec3 toward = towardViewer();
   if ((!wall || base > 0.5 || !within) && dot(normal, toward) < 0.0) normal = -normal;
   bool inside = (base > 0.5) ? gl_FrontFacing : !gl_FrontFacing;
-  vec3 colour = vec3(0.70, 0.74, 0.78);
-  if (stamp > 0.5) colour = mix(vec3(0.93, 0.93, 0.91), texelFetch(colours, ivec2(int(stamp + 0.5) - 1, 0), 0).rgb, 0.5);
-  if (stamp > lit.x && stamp <= lit.y) colour = mix(colour, vec3(1.0, 0.72, 0.2), 0.55);
-  vec3 lamp = normalize(vec3(-0.45, -0.6, 1.0));
-  float light = 0.46 + 0.44 * max(dot(normal, lamp), 0.0) + 0.16 * max(dot(normal, toward), 0.0);
-  light += 0.22 * pow(max(dot(reflect(-lamp, normal), toward), 0.0), 18.0);
-  if (inside) gl_FragColor = vec4(0.80, 0.42, 0.22, 1.0);
-  else gl_FragColor = vec4(colour * light, 1.0);
+  gl_FragColor = inside ? INSIDE : shaded(colourOf(stamp), normal, toward);
 }`;
 
-export class Field {
-  // `begin` levels of cells, changes of steps that end at `ends`: `counts` cells each, `jumps` from one to the next, `levels`
-  constructor({ size, cell, level, place, begin, ends, counts, jumps, levels }) {
+export class Field extends Body {
+  // `place` is the middle of the first cell, on the bottom.
+  constructor({ size, cell, place, ...film }) {
+    super(film);
     const [nx, ny] = size;
-    Object.assign(this, { size, ends, levels, level, step: 0, changes: jumps.length });
-    this.cells = new Int32Array(jumps.length);
-    for (let n = 0, at = 0; n < jumps.length; n++) this.cells[n] = at += jumps[n];
-    this.first = new Int32Array(counts.length + 1);
-    for (let s = 0; s < counts.length; s++) this.first[s + 1] = this.first[s] + counts[s];
-    this.old = new Uint16Array(jumps.length); // what was there before each change
-    this.oldStamp = new Uint16Array(jumps.length);
-    const heights = Uint16Array.from(begin), stamps = new Uint16Array(begin.length);
-    for (let s = 0; s < counts.length; s++) for (let n = this.first[s]; n < this.first[s + 1]; n++) {
-      const at = this.cells[n];
-      this.old[n] = heights[at]; this.oldStamp[n] = stamps[at];
-      heights[at] = levels[n]; stamps[at] = s + 1;
-    }
-    this.shown = new Float32Array(2 * nx * ny);
-    begin.forEach((value, at) => { this.shown[2 * at] = value * level; });
+    Object.assign(this, { size, cell });
     this.texture = new DataTexture(this.shown, nx, ny, RGFormat, FloatType);
     this.texture.minFilter = this.texture.magFilter = NearestFilter;
     this.texture.needsUpdate = true;
-    this.colours = new Uint8Array(4 * Math.max(ends.length, 1)).fill(255);
-    this.colourTexture = new DataTexture(this.colours, Math.max(ends.length, 1), 1, RGBAFormat);
-    this.colourTexture.needsUpdate = true;
-    const uniforms = { field: { value: this.texture }, colours: { value: this.colourTexture }, size: { value: new Vector2(nx, ny) }, section: { value: new Vector4(0, 0, 0, 1) }, lit: { value: new Vector2(-1, -1) } };
-    const geometry = Field.geometry(nx, ny), material = (base) => new ShaderMaterial({ vertexShader: VERTEX, fragmentShader: FRAGMENT, uniforms: { ...uniforms, base: { value: base } }, side: DoubleSide, polygonOffset: true, polygonOffsetFactor: 1.5, polygonOffsetUnits: 4 });
-    this.uniforms = uniforms;
+    Object.assign(this.uniforms, { field: { value: this.texture }, size: { value: new Vector2(nx, ny) } });
+    const geometry = Field.geometry(nx, ny), material = (base) => new ShaderMaterial({ vertexShader: VERTEX, fragmentShader: FRAGMENT, uniforms: { ...this.uniforms, base: { value: base } }, side: DoubleSide, polygonOffset: true, polygonOffsetFactor: 1.5, polygonOffsetUnits: 4 });
     this.mesh = new Group();
-    for (const base of [0, 1]) { const mesh = new Mesh(geometry, material(base)); mesh.frustumCulled = false; this.mesh.add(mesh); }
+    for (const base of [0, 1]) this.mesh.add(Body.surfaceOf(geometry, material(base)));
     this.mesh.position.set(...place);
     this.mesh.scale.set(cell, cell, 1);
-    const top = begin.reduce((high, value) => Math.max(high, value), 0) * level;
+    const top = film.begin.reduce((high, value) => Math.max(high, value), 0) * film.level;
     this.box = [0, 1].map((i) => [place[i] - cell / 2, place[i] + (size[i] - 0.5) * cell]).concat([[place[2], place[2] + top]]);
   }
 
@@ -110,36 +85,36 @@ export class Field {
     return geometry;
   }
 
-  // Show the body as it is at a time.
-  goTo(t) {
-    const wanted = after(this.ends, t + 1e-9);
-    if (wanted === this.step) return;
-    for (; this.step < wanted; this.step++) for (let n = this.first[this.step]; n < this.first[this.step + 1]; n++) {
-      this.shown[2 * this.cells[n]] = this.levels[n] * this.level;
-      this.shown[2 * this.cells[n] + 1] = this.step + 1;
+  refresh() { this.texture.needsUpdate = true; }
+
+  // The closed surface that is shown: heights at the middles of the cells, walls a cell wide, upright sides.
+  surface() {
+    const { size: [nx, ny], cell, shown } = this, place = this.mesh.position.toArray();
+    const wide = nx + 4, high = ny + 4, count = wide * high, along = (i, n) => (i < 2 ? -0.5 : i > n + 1 ? n - 0.5 : i - 2);
+    const inner = (i, n) => Math.min(Math.max(i - 2, 0), n - 1), z = new Float64Array(count), number = new Int32Array(2 * count).fill(-1);
+    for (let j = 1; j < high - 1; j++) for (let i = 1; i < wide - 1; i++) z[j * wide + i] = Math.max(shown[2 * (inner(j, ny) * nx + inner(i, nx))], 0);
+    const vertices = [], faces = [];
+    const vertex = (at, below) => { // where the top lies on the bottom both share a corner
+      const key = below && z[at] > 0 ? at + count : at;
+      if (number[key] < 0) {
+        number[key] = vertices.length / 3;
+        vertices.push(place[0] + cell * along(at % wide, nx), place[1] + cell * along(Math.floor(at / wide), ny), place[2] + (below ? 0 : z[at]));
+      }
+      return number[key];
+    };
+    for (let j = 1; j < high; j++) for (let i = 1; i < wide; i++) {
+      const c = j * wide + i, d = c - 1, b = c - wide, a = b - 1;
+      for (const corners of [[a, b, c], [a, c, d]]) {
+        if (corners.every((at) => z[at] <= 0)) continue;
+        faces.push(...corners.map((at) => vertex(at, false)), ...corners.reverse().map((at) => vertex(at, true)));
+      }
     }
-    for (; this.step > wanted; this.step--) for (let n = this.first[this.step] - 1; n >= this.first[this.step - 1]; n--) {
-      this.shown[2 * this.cells[n]] = this.old[n] * this.level;
-      this.shown[2 * this.cells[n] + 1] = this.oldStamp[n];
-    }
-    this.texture.needsUpdate = true;
+    return { vertices, faces };
   }
 
-  // The heights that are shown above the bottom, with what they mean.
-  solid() {
-    return { heights: this.shown.filter((_, n) => n % 2 === 0), size: this.size, cell: this.mesh.scale.x, place: this.mesh.position.toArray() };
-  }
-
-  // Colour what was cut; `of(t)` returns r, g, b (0 to 255) of a time.
-  paint(of) {
-    this.ends.forEach((t, s) => this.colours.set(of(t), 4 * s));
-    this.colourTexture.needsUpdate = true;
-  }
-
-  // The place of the surface on a line of sight from `from` to `to` (in the body's own frame), and the time of the cut
-  // that made it: {place, t}, t null where nothing was cut; null where the line misses what is shown.
+  // The same as for any body, but as high as the cell that is met from above.
   pick(from, to) {
-    const { x: cell } = this.mesh.scale, { x, y, z } = this.mesh.position, [nx, ny] = this.size, { section } = this.uniforms;
+    const { cell } = this, { x, y, z } = this.mesh.position, [nx, ny] = this.size;
     const at = [x, y, z].map((zero, i) => (from[i] - zero) / (i < 2 ? cell : 1)), way = at.map((v, i) => (to[i] - [x, y, z][i]) / (i < 2 ? cell : 1) - v);
     const span = [[-0.5, nx - 0.5], [-0.5, ny - 0.5], [0, this.box[2][1] - z]];
     let [first, last] = [0, 1];
@@ -154,20 +129,13 @@ export class Field {
       const i = Math.min(Math.max(Math.round(p[0]), 0), nx - 1), j = Math.min(Math.max(Math.round(p[1]), 0), ny - 1), k = 2 * (j * nx + i);
       if (this.shown[k] < 1e-3 || p[2] > this.shown[k] + 1e-6) continue;
       const place = p.map((v, axis) => mm[axis] + v * (axis < 2 ? cell : 1));
-      const { value: out } = section;
-      if (out.x * place[0] + out.y * place[1] + out.z * place[2] > out.w) continue;
+      if (this.isLeftOut(place)) continue;
       if (n === steps || way[2] < 0) place[2] = Math.min(place[2], z + this.shown[k]);
-      const stamp = this.shown[k + 1];
-      return { place, t: stamp ? this.ends[stamp - 1] : null };
+      return { place, t: this.timeOf(this.shown[k + 1]) };
     }
     return null;
   }
 
-  light(from, to) { this.uniforms.lit.value.set(after(this.ends, from + 1e-6), after(this.ends, to + 1e-6)); }
-
   // The bottom is seen from below only.
   seenFrom(camera, target) { this.mesh.children[1].visible = camera.z < target.z; }
-
-  // Leave out what is beyond a plane across an axis; null for all.
-  cutAt(axis, at) { this.uniforms.section.value.set(axis === 0 ? 1 : 0, axis === 1 ? -1 : 0, 0, axis === null ? 1 : axis === 1 ? -at : at); }
 }

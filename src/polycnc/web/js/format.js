@@ -8,6 +8,7 @@ export function units(inch) {
     number: (mm) => (mm * factor).toFixed(places),
     length: (mm) => `${(mm * factor).toFixed(places)} ${name}`,
     feed: (mm_min) => `${(mm_min * factor).toFixed(inch ? 1 : 0)} ${name}/min`,
+    rate: (mm3_s) => `${(mm3_s * 60 * (inch ? MM_PER_INCH ** -3 : 1e-3)).toPrecision(3)} ${inch ? "in³" : "cm³"}/min`,
     size: (mm) => `${Number((mm * factor).toPrecision(4))} ${name}`,
   };
 }
