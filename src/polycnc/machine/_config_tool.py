@@ -29,7 +29,7 @@ class ToolConfig(StrictModel):
     wear_x_mm: float = Field(default=0.0, description="Added to the offset along X.")
     wear_z_mm: float = Field(default=0.0, description="Added to the offset along Z.")
     description: str = Field(default="", description="Any text.")
-    shape: Literal["flat", "ball", "bull", "drill", "chamfer", "taper", "boring"] | None = Field(
+    shape: Literal["flat", "ball", "bull", "drill", "chamfer", "taper", "boring", "form"] | None = Field(
         default=None, description="What its lower end looks like, where stock is cut; absent: as remarks say."
     )
     corner_mm: NotNegative = Field(default=0.0, description="Radius at the end of a `bull` tool.")
@@ -39,6 +39,12 @@ class ToolConfig(StrictModel):
     )
     tip_diameter_mm: NotNegative = Field(
         default=0.0, description="Flat diameter at the end of a `chamfer` or `taper` tool."
+    )
+    outline: tuple[tuple[NotNegative, NotNegative], ...] = Field(
+        default=(),
+        max_length=1000,
+        description="Of a `form` tool: radii and heights (mm) from its middle out and up, and back to a neck where it "
+        "undercuts: `[[0, 0], [10, 0], [10, 6], [4, 6]]` is a T-slot mill.",
     )
     flute_mm: Size | None = Field(default=None, description="How far up it cuts; absent: all the way.")
     shank: tuple[tuple[Size, Size], ...] = Field(

@@ -159,7 +159,12 @@ class MachiningCollector:
             return self._what_was_cut(turned.stock, turned.tally, form, course, given)
         given = self._with_hand_tool(course, tools_of(self._config, self.texts)) if tools is None else tools
         mills = {number: tool for number, tool in given.items() if isinstance(tool, Tool)}
-        if self._turned:
+        undercuts = any(
+            number in mills and mills[number].undercuts for number in np.unique(course.tool).tolist()
+        )
+        if self._turned or undercuts:
+            if not self._turned:
+                form = form.told(course, mills)
             solid = TurnedCutting(form.voxels(), mills)
             solid.add(course)
             return self._what_was_cut(solid.stock, solid.tally, form, course, given)

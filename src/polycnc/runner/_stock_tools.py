@@ -55,14 +55,16 @@ def _is_inch(text: ProgramText) -> bool:
 def _whole(tool: Tool | None, config: ToolConfig) -> Tool | None:
     """Return a tool with what its table in the machine file says of it."""
     if config.shape is not None:
-        if not config.radius_mm > 0.0:
+        radius_mm = max((radius for radius, _ in config.outline), default=config.radius_mm)
+        if not radius_mm > 0.0:
             raise UsageError(f"a {config.shape} tool without a radius", hint="Give 'radius_mm'.")
         tool = Tool(
             ToolKind(config.shape),
-            2.0 * config.radius_mm,
+            2.0 * radius_mm,
             corner_mm=config.corner_mm,
             angle_deg=config.angle_deg,
             tip_mm=config.tip_diameter_mm,
+            outline=config.outline,
         )
     if tool is None:
         return None

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -107,6 +107,13 @@ class Form:
             raise UsageError(f"'{self.text}' on a lathe", hint="Write auto or cylinder=D,Z0,Z1.")
         return Turned(diameter, low, high, self.cell_mm or _cell_mm((high - low) / _FINER_TURNED))
 
+    def told(self, course: Rows, tools: Mapping[int, Tool]) -> Form:
+        """Return the box for a course in place of `auto`."""
+        if self.text != "auto":
+            return self
+        box = around(course, tools)
+        return replace(self, text="box=" + ",".join(f"{each:.9g}" for each in (*box.low, *box.high)))
+
     def voxels(self) -> Voxels:
         """Return the body for tools that come from any side.
 
@@ -115,7 +122,7 @@ class Form:
         """
         if self.fixtures or self.target is not None:
             raise UsageError(
-                "fixtures and targets with turning axes", hint="They are for three axes: leave them out."
+                "fixtures and targets with turning axes or tools that undercut", hint="Leave them out."
             )
         kind, _, numbers = self.text.partition("=")
         if kind == "box":
@@ -127,7 +134,7 @@ class Form:
             cell_mm = self.cell_mm or _cell_mm(_FINER_TURNED * max(diameter, high - low))
             return Voxels.cylinder(diameter, low, high, cell_mm)
         raise NoStockError(
-            f"'{self.text}' where an axis turns the part or the tool",
+            f"'{self.text}' where an axis turns, or a tool undercuts",
             hint="Write box=X0,Y0,Z0,X1,Y1,Z1 or cylinder=D,Z0,Z1.",
         )
 

@@ -99,6 +99,16 @@ def make_profile(pieces: Sequence[Line | Arc]) -> Profile:
     return Profile(rows)
 
 
+def falling_profile(pieces: Sequence[Line]) -> Profile:
+    """Make the upper outline of a body of these pieces, from the axis outwards; none of them rises."""
+    rows = np.zeros((len(pieces), COLUMNS))
+    for row, piece in zip(rows, pieces, strict=True):
+        row[FROM_R], row[TO_R], row[BEGIN_Z] = piece.from_r, piece.to_r, piece.begin_z
+        if math.isfinite(piece.begin_z):
+            row[SLOPE] = (piece.end_z - piece.begin_z) / (piece.to_r - piece.from_r)
+    return Profile(rows)
+
+
 def _height(row: Floats, radius_mm: float) -> float:
     if row[ARC_R] > 0.0:
         left = row[ARC_R] ** 2 - (radius_mm - row[CENTRE_R]) ** 2

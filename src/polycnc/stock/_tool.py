@@ -8,13 +8,17 @@ from enum import StrEnum
 from itertools import pairwise
 
 from polycnc.errors import UsageError
-from polycnc.stock._profile import Arc, Line, Profile, make_profile
+from polycnc.stock._profile import Arc, Line, Profile, falling_profile, make_profile
 
 LARGEST_MM = 1000.0
 """Of any size of a tool."""
 _BAR_SHARE = 0.75
 """How thick a boring bar is, as a part of what it bores."""
 _NO_PROFILE = make_profile(())
+_OUTLINE = (
+    "Give radii and heights from [0, 0], out to the greatest radius and back to a neck, never down: "
+    "[[0, 0], [10, 0], [10, 6], [4, 6]]."
+)
 
 
 class ToolKind(StrEnum):
@@ -27,6 +31,7 @@ class ToolKind(StrEnum):
     CHAMFER = "chamfer"
     TAPER = "taper"
     BORING = "boring"
+    FORM = "form"
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,7 +42,8 @@ class Tool:
     chamfering tools) or the angle of a flank to the axis (tapers), `tip_mm` the flat diameter at the end of a
     chamfering or tapered tool. `flute_mm` is how far up it cuts, infinite where that is not known. `shank` and `holder`
     are cylinders above: height above the tip and radius, from below. A `left_hand` tool cuts with M4. `teeth` is how
-    many edges cut in a turn, 0 where that is not known.
+    many edges cut in a turn, 0 where that is not known. `outline` is that of a form tool: radii and heights from the
+    middle of its end out and up; where it comes back to a neck it cuts what lies under something else.
 
     Raises:
         UsageError: a size that no tool has, or sizes that do not fit together.
@@ -53,6 +59,7 @@ class Tool:
     shank: tuple[tuple[float, float], ...] = ()
     left_hand: bool = False
     teeth: int = 0
+    outline: tuple[tuple[float, float], ...] = ()
 
     def __post_init__(self) -> None:
         sizes = (self.diameter_mm, *(size for step in (*self.shank, *self.holder) for size in step))
@@ -79,9 +86,34 @@ class Tool:
             )
         if not self.flute_mm > 0.0:
             raise UsageError("a tool without flutes", hint="Give a flute length above 0 mm.")
+        self._check_outline()
         for name, steps in (("shank", self.shank), ("holder", self.holder)):
             if any(low[0] > high[0] for low, high in pairwise(steps)):
                 raise UsageError(f"steps of a {name} that do not rise", hint="Give them from below.")
+
+    def _check_outline(self) -> None:
+        if (self.kind is ToolKind.FORM) != bool(self.outline):
+            raise UsageError(
+                f"a {self.kind} tool with an outline of {len(self.outline)} points", hint=_OUTLINE
+            )
+        if not self.outline:
+            return
+        radii, heights = zip(*self.outline, strict=True)
+        widest = radii.index(max(radii))
+        rises = all(a <= b for a, b in pairwise(heights))
+        bends_once = all(a <= b for a, b in pairwise(radii[: widest + 1])) and all(
+            a >= b for a, b in pairwise(radii[widest:])
+        )
+        begins = (radii[0], heights[0]) == (0.0, 0.0)
+        if not (begins and rises and bends_once and heights[-1] <= LARGEST_MM and len(radii) > 1):
+            raise UsageError("an outline that is no tool's", hint=_OUTLINE)
+        if abs(2.0 * max(radii) - self.diameter_mm) > 1e-6:
+            raise UsageError(
+                f"an outline of {2.0 * max(radii):g} mm on a tool of {self.diameter_mm:g} mm",
+                hint="Its greatest radius is half the diameter.",
+            )
+        if self.undercuts and not (radii[-1] > 0.0 and heights[-1] > 0.0):
+            raise UsageError("an outline without a neck", hint=_OUTLINE)
 
     def __str__(self) -> str:
         return f"{self.kind} of {self.diameter_mm:g} mm"
@@ -91,12 +123,37 @@ class Tool:
         """Half the diameter."""
         return 0.5 * self.diameter_mm
 
+    @property
+    def undercuts(self) -> bool:
+        """Whether it is narrower above than below."""
+        return bool(self.outline) and self.outline[-1][0] < max(radius for radius, _ in self.outline)
+
+    def upper_profile(self) -> Profile:
+        """Return how high up it cuts at each radius beyond its neck; of other tools none, they cut all the way."""
+        if not self.undercuts:
+            return _NO_PROFILE
+        radii = [radius for radius, _ in self.outline]
+        back = self.outline[radii.index(max(radii)) :][::-1]
+        pieces = [Line(0.0, back[0][0], math.inf, math.inf)]
+        pieces += [Line(r0, r1, z0, z1) for (r0, z0), (r1, z1) in pairwise(back) if r1 > r0]
+        return falling_profile(pieces)
+
     def cutting_profile(self) -> Profile:
         """Return the outline of what cuts."""
         radius, tip = self.radius_mm, 0.5 * self.tip_mm
         match self.kind:
             case ToolKind.FLAT | ToolKind.BORING:
                 return make_profile((Line(0.0, radius, 0.0, 0.0),))
+            case ToolKind.FORM:
+                widest = max(self.outline)[0]
+                below = [
+                    at
+                    for i, at in enumerate(self.outline)
+                    if not any(r >= widest for r, _ in self.outline[:i])
+                ]
+                return make_profile(
+                    [Line(r0, r1, z0, z1) for (r0, z0), (r1, z1) in pairwise(below) if r1 > r0]
+                )
             case ToolKind.BALL:
                 return make_profile((Arc(0.0, radius, 0.0, radius, radius),))
             case ToolKind.BULL:
@@ -133,6 +190,14 @@ class Tool:
         if necked or self.kind is ToolKind.BORING or math.isinf(self.flute_mm):
             return _NO_PROFILE
         return _steps_profile(((self.flute_mm, self.radius_mm + beside_mm),))
+
+    def neck_profile(self) -> Profile:
+        """Return the outline of the shank, or of the neck of a form tool that has no other."""
+        return (
+            self.shank_profile()
+            if self.shank or not self.undercuts
+            else _steps_profile((self.outline[-1][::-1],))
+        )
 
     def shank_profile(self) -> Profile:
         """Return the outline of the shank, which must not touch anything."""

@@ -9,6 +9,7 @@ import numpy.typing as npt
 
 from polycnc.stock._contacts import Contact, ContactKind
 from polycnc.stock._cutting import CHORD_SHARE
+from polycnc.stock._profile import COLUMNS
 from polycnc.stock._rows import Rows
 from polycnc.stock._sweep import AT_X, AT_Y, DEPTH_MM, VOLUME_MM3
 from polycnc.stock._tally import Tally
@@ -19,6 +20,7 @@ from polycnc.stock._ways import Ways, WaysOfRows
 
 Floats = npt.NDArray[np.float64]
 
+_NOTHING = np.zeros((0, COLUMNS))
 _RIM_CELLS = 1.0
 """How much narrower, and higher, a tool is that must not touch what it has cut: points are in it by chance."""
 
@@ -53,14 +55,17 @@ class TurnedCutting:
         rim = _RIM_CELLS * self.stock.cell_mm
         core = outline.within(max(outline.radius_mm - rim, 0.5 * outline.radius_mm)).rows
         first_step = min((height for height, _ in (*tool.shank, *tool.holder)), default=self._reach_mm)
-        height = min(first_step, self._reach_mm)
+        height, tops = min(first_step, self._reach_mm), tool.upper_profile().rows
+        if tool.undercuts:
+            height = min(height, tool.outline[-1][1])
         if ways.rapid:
-            self._note(ContactKind.RAPID, ways, self._figures(ways, core, rim, height - rim, cuts=False), rim)
-        cut = self._figures(ways, outline.rows, 0.0, height, cuts=True)
+            met = self._figures(ways, core, rim, height - rim, cuts=False, tops=tops)
+            self._note(ContactKind.RAPID, ways, met, rim)
+        cut = self._figures(ways, outline.rows, 0.0, height, cuts=True, tops=tops)
         self.tally.count(ways, cut, tool)
         self._note(ContactKind.FLUTES, ways, cut, tool.flute_mm)
         for kind, steps in (
-            (ContactKind.SHANK, tool.shank_profile()),
+            (ContactKind.SHANK, tool.neck_profile()),
             (ContactKind.HOLDER, tool.holder_profile()),
         ):
             if len(steps.rows):
@@ -77,13 +82,30 @@ class TurnedCutting:
             self.tally.idle_s += float(ways.duration_s[moves].sum())
 
     def _figures(
-        self, ways: Ways, outline: Floats, from_mm: float, height_mm: float, *, cuts: bool
+        self,
+        ways: Ways,
+        outline: Floats,
+        from_mm: float,
+        height_mm: float,
+        *,
+        cuts: bool,
+        tops: Floats = _NOTHING,
     ) -> Floats:
         found, stock = np.zeros((len(ways.ends), VOXEL_FIGURES)), self.stock
         tips = np.ascontiguousarray(ways.places[:, :3])
         axes = np.ascontiguousarray(ways.axes)
         sweep_voxels(
-            stock.cells, stock.first, stock.cell_mm, tips, axes, outline, from_mm, height_mm, cuts, found
+            stock.cells,
+            stock.first,
+            stock.cell_mm,
+            tips,
+            axes,
+            outline,
+            tops,
+            from_mm,
+            height_mm,
+            cuts,
+            found,
         )
         return found
 

@@ -31,6 +31,7 @@ def _remove(
     tip: Floats,
     axis: Floats,
     rows: Floats,
+    tops: Floats,
     figures: Floats,
     cuts: bool,
     begin: npt.NDArray[np.int64],
@@ -74,7 +75,8 @@ def _remove(
                 if along < 0.0 or along > height:
                     continue
                 beside2 = dx * dx + dy * dy + dz * dz - along * along
-                if along < level(rows, math.sqrt(max(0.0, beside2))):
+                beside = math.sqrt(max(0.0, beside2))
+                if along < level(rows, beside) or (tops.shape[0] > 0 and along > level(tops, beside)):
                     continue
                 figures[VOLUME_MM3] += 1.0
                 depth = max(along, (first[0] + ix * cell_mm - end[0]) * end[3] + up_end)
@@ -93,6 +95,7 @@ def sweep_voxels(
     tips: Floats,
     axes: Floats,
     rows: Floats,
+    tops: Floats,
     from_mm: float,
     height_mm: float,
     cuts: bool,
@@ -101,8 +104,9 @@ def sweep_voxels(
     """Move a tool from each of `tips` [n + 1, 3] to the next, with its axis [n + 1, 3], upwards, turning along.
 
     `cells` [along z, y, x] are 1 where there is material at `first + place * cell_mm`. The tool has the outline `rows`,
-    from `from_mm` above its tip, and is `height_mm` high. `figures` [n, 7] get volume, how far up the tool it met
-    something, seen from the end of the way too, and where that was.
+    from `from_mm` above its tip, and is `height_mm` high; `tops` is where it ends above, empty where that is nowhere.
+    `figures` [n, 7] get volume, how far up the tool it met something, seen from the end of the way too, and where that
+    was.
     """
     tip, axis, found = np.empty(3), np.empty(3), np.zeros(VOXEL_FIGURES + 1)
     begin, last, end = np.zeros(3, np.int64), np.zeros(3, np.int64), np.zeros(6)
@@ -129,7 +133,7 @@ def sweep_voxels(
             for i in range(3):
                 axis[i] /= length
                 tip[i] = tips[n, i] + share * (tips[n + 1, i] - tips[n, i]) + from_mm * axis[i]
-            _remove(cells, first, cell_mm, tip, axis, rows, found, cuts, begin, last, end)
+            _remove(cells, first, cell_mm, tip, axis, rows, tops, found, cuts, begin, last, end)
         for i in range(VOXEL_FIGURES):
             figures[n, i] = found[i]
         figures[n, VOLUME_MM3] *= cell_mm**3

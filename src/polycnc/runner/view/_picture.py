@@ -121,14 +121,20 @@ def tool_shapes(
 
 
 def _outline(tool: Tool) -> dict[str, Any]:
+    if tool.undercuts:
+        return _shape(tool, list(tool.outline))
     profile = tool.cutting_profile()
     edges = sorted({*np.linspace(0.0, tool.radius_mm, _STEPS + 1).tolist(), *profile.rows[:, 1].tolist()})
     outline = [(0.0, profile.height(0.0)), *((r, profile.height(r)) for r in edges if r > 0.0)]
     end = outline[-1][1]
     flutes = tool.flute_mm if np.isfinite(tool.flute_mm) else end + _SHAFT_DIAMETERS * tool.diameter_mm
+    return _shape(tool, [*outline, (tool.radius_mm, max(flutes, end))])
+
+
+def _shape(tool: Tool, outline: list[tuple[float, float]]) -> dict[str, Any]:
     return {
         "kind": tool.kind.value,
         "diameter": tool.diameter_mm,
-        "outline": [*outline, (tool.radius_mm, max(flutes, end))],
+        "outline": outline,
         "holder": [list(step) for step in tool.holder],
     }
