@@ -341,7 +341,8 @@ _SCOPE: dict[str, object] = {
     "to_integer": _numbers.to_integer, "to_real": _numbers.to_real, "to_double": _numbers.to_double,
     "to_boolean": _numbers.to_boolean, "text_of": _strings.text_of, "put": _strings.put,
     "put_new": _strings.put_new, "put_part": _strings.put_part, "dimension": _strings.dimension,
-    "dimension_field": dimension_field, "Field": Field, "index_needed": index_needed, "section": _strings.section, "added": _strings.added,
+    "dimension_field": dimension_field, "Field": Field, "index_needed": index_needed,
+    "section": _strings.section, "added": _strings.added,
     "parameter": _parameter, "parameter_field": _parameter_field, "kept": _kept, "assigned": _assigned,
     "duration": _duration, "as_word": _as_word, "inserted": _inserted, "ic_condition": _ic_condition,
 }  # fmt: skip
