@@ -32,6 +32,7 @@ CORNER_STOP = 8  # flag: come to rest at the end unless the next segment goes on
 LAST = 16  # flag: rounded corners lie before it and the path rests at its end, with nothing after
 ROUNDING = 32  # flag: an arc that rounds a corner
 OVERLAPS = 64  # flag: at an end of it is an OVERLAP
+WITH_SPINDLE = 128  # flag: follows the spindle, so no override and no HOLD_LATER acts
 TURN = 4  # flag, set here: no feed axis moves, so length and speed are those of the axes that ride along
 
 GEO = BEZIER_SIZE
@@ -77,7 +78,7 @@ SEGMENT_ROW = np.dtype(
         ("bound", np.float64),  # earlier planned speed there, if too close to reach a lower one
         ("tag", np.int64),  # the caller's name for the segment: what block it belongs to
         ("kind", np.int8),
-        ("flags", np.int8),
+        ("flags", np.int16),
     ],
     align=True,
 )
