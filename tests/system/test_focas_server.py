@@ -160,9 +160,9 @@ def test_programs_come_and_go_on_their_own_channel(port: int) -> None:
     listed = commands.payload(0x06, 1, 10, 2)
     assert [struct.unpack_from(">I", listed, at)[0] for at in range(0, len(listed), 72)] == [815, 4711]
     assert b"NEW" in listed
-    commands.payload(0x05, 4711)
-    (gone,) = commands.commands(Request(0x05, (4711, 0, 0, 0)))
-    assert gone.status == 5
+    (kept,) = commands.commands(Request(0x05, (4711, 0, 0, 0)))
+    assert kept.status == -1  # a program is executed: nothing is deleted
+    assert commands.payload(0x06, 1, 10, 2) == listed
 
 
 def test_sessions_are_limited_and_given_back(port: int) -> None:

@@ -169,8 +169,50 @@ def test_programs_go_both_ways(served: Served, session: Any) -> None:
     assert session.cnc_dwnstart(handle) == OK
     assert session.cnc_download(handle, text, len(text)) == OK
     assert session.cnc_dwnend(handle) == EW.EW_DATA  # registered already
+    assert session.cnc_delete(handle, 1234) == EW.EW_BUSY  # a program is executed
+    served.control.reset()
     assert session.cnc_delete(handle, 1234) == OK
     assert 1234 not in served.control.programs
+
+
+REFUSED = {
+    "MDI": {"delete 1": -1, "delete 77": -1, "search 2": 0, "search 77": 5, "selected": 7},
+    "JOG": {"delete 7": -1, "delete 77": 5, "search 77": 5, "search 2": 0, "selected": 7, "delete 1": 0},
+    "MEM": {"delete 7": -1, "delete 8001": 0, "search 77": 5, "search 2": 0, "selected": 2, "delete 7 ": 0},
+    "running": {"delete 1": -1, "delete 77": -1, "search 2": -1, "search 77": -1, "selected": 7},
+}  # fmt: skip
+"""What deleting and searching answer in a mode, one after another, and which program is selected (Manual 000)."""
+
+
+@pytest.mark.covers("fanuc.cnc_delete", "fanuc.cnc_search")
+def test_programs_are_deleted_and_sought_over_the_network_as_in_the_library(session: Any) -> None:
+    served = Served(PROFILES[0])
+    _, far = session.cnc_allclibhndl3("127.0.0.1", served.port, 10)
+    session.attach(0, near := PowerMate())
+    for control, handle in ((near, session.cnc_allclibhndl()[1]), (served.control, far)):
+        for scene, answers in REFUSED.items():
+            control.reset()
+            control.select_mode("MEM")
+            for number in (1, 2, 7, 8001):
+                if number not in control.programs:
+                    control.programs.register(number, PROGRAM.replace("0007", f"{number:04d}"))
+            control.select_program(7)
+            if scene == "running":
+                control.cycle_start()
+                control.advance(3)
+            else:
+                control.select_mode(scene)
+            told = dict[str, int]()
+            for asked in answers:
+                name, _, which = asked.partition(" ")
+                called = getattr(session, f"cnc_{name}", None)
+                told[asked] = int(called(handle, int(which))) if called else control.programs.selected
+            assert told == answers, scene
+    assert session.cnc_rdparam(far, 1320, 1, 8)[0] == OK
+    assert (
+        session.cnc_rdparam(far, 1320, 1, 7)[0] == session.cnc_rdparam(far, 1320, -1, 15)[0] == EW.EW_LENGTH
+    )
+    served.close()
 
 
 def test_functions_without_a_request_are_not_there(served: Served, session: Any) -> None:

@@ -76,6 +76,9 @@ def test_each_g_address_is_an_entry_of_its_own(code: int) -> None:
     }
     assert control.value(f"FXC(1,{code},TAB$)") == 0.0
     assert control.shifts.tables[NPV].columns[1].shifts == {code: 80.25}
+    first, after = code // 100 * 100 + 53, code // 100 * 100 + 60
+    assert control.refuses(f"FXC(2,{first},TAB$)=1")
+    assert control.refuses(f"FXC(2,{after},TAB$)=1")
 
 
 @pytest.mark.parametrize(
@@ -259,6 +262,7 @@ def test_external_and_general_compensations_have_the_unit_of_g70_or_g71(group: i
     for line in (
         f"TC(1,{group},4)=1",
         f"TC(1,{group},0,0)=1",
+        f"TC(1,{group},1)=1",
         f"TC(9,{group},0)=1",
         "TC(1,945,0)=1",
         "TC(1,146,0)=1",
@@ -267,6 +271,9 @@ def test_external_and_general_compensations_have_the_unit_of_g70_or_g71(group: i
     general = group % 100 == 47
     if not general:
         assert control.refuses(f"TC(3,{group},0)=1")
+        return
+    control.run(f"TC(3,{group},0)=-3", f"TC(4,{group},0)=0.5", f"TC(5,{group},0)=7")
+    assert [control.tools.values[group, each] for each in (3, 4, 5)] == pytest.approx([-76.2, 12.7, 7.0])
 
 
 @pytest.mark.parametrize(

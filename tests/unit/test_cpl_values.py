@@ -274,6 +274,9 @@ def test_declared_variables_take_the_values_of_their_types() -> None:
     assert memory["@WZKOR"][3, 2] == float(np.float32(7.6))
     assert text_of(memory["@PSTR2$"][3]) == "DE"
     assert (memory["@WZNR%"].sizes, memory["@PSTR2$"].sizes) == ((9,), (9, 2))
+    for whole in ("@_R=1", "@_R%=1", "@WZNR%=A%", "FOR @WZKOR=1 TO 2\nNEXT @WZKOR", '@PSTR2$="AB"'):
+        assert failure(f"A%=1\n{whole}", host).what == "INVALID VARIABLE"  # a field keeps its elements
+    assert (memory["@WZNR%"][2], memory["@_R"].sizes) == (6, (100,))
     error = failure("#A=1\n@ABCD=3", host)
     assert (error.what, error.position.line) == ("there is no permanent variable @ABCD", 2)  # type: ignore[union-attr]
     assert (

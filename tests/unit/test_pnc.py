@@ -11,7 +11,7 @@ from polycnc.cnc import ControlError, RunState
 from polycnc.cnc import Mode as CncMode
 from polycnc.controllers.bosch import Pnc
 from polycnc.controllers.bosch.ncs import Mode
-from polycnc.controllers.bosch.system import Signals
+from polycnc.controllers.bosch.system import Signals, Tab
 from polycnc.machine import Host, SnapshotError
 from polycnc.post import parse_tool_path
 from polycnc.runner import post_file
@@ -192,7 +192,9 @@ def test_axes_go_from_channel_to_channel_and_indices_follow(example: Example) ->
         5,
         -1,
     ]
-    assert example.refuses('CPOS("Y")') == "1970"
+    of_channels = ("CPOS", "CPROBE", "PPOS", "PROBE", "AXO")
+    assert {example.refuses(f'{name}("Y")') for name in of_channels} == {"1970"}
+    assert [example.value(f'{name}("Y")') for name in ("WPOS", "SPOS")] == [4, 4]
     # an asynchronous axis is in mm, whatever the unit of the channel
     found = example.run('N1 G70\n2 #A=MPOS("Y") : #B=MPOS("Z") : #C=WPOS("Y")')
     assert [found[f"#{name}"] for name in "ABC"] == pytest.approx([4, 5 / 25.4, 4])
@@ -320,6 +322,27 @@ def test_errors_of_another_channel_are_told_in_their_order(example: Example) -> 
     example.pnc.reset(channel=2)
     assert example.run(program)["#ERG%"] == 0
     assert example.refuses("PROBE(1,0)", 2) == "1970"
+
+
+@pytest.mark.parametrize(
+    ("line", "what"), [("20 A=CPOS(9)", "INVALID"), ("N2 X[1/A%]", "division"), ("N2 Q7", "Q")]
+)
+def test_an_error_of_a_block_prepared_ahead_is_told_when_the_program_gets_there(
+    example: Example, line: str, what: str
+) -> None:
+    example.start(f"1 A%=0\nN1 G1 X10 F6000\n{line}\nN3 X20")
+    for _ in range(3):  # 100 ms of motion and ramps
+        example.pnc.advance(30)
+        assert example.pnc.information(Tab.ERRORS) == []
+        assert example.pnc.run_state(1) is RunState.ACTIVE
+    example.pnc.advance(60)
+    assert example.pnc.run_state(1) is RunState.ALARM
+    assert example.pnc.axes["X"].setpoint == 10.0
+    (told,) = example.pnc.information(Tab.ERRORS)
+    assert what in told[-1]
+    assert [*example.pnc.information(Tab.ERRORS)] == [told]  # once
+    example.pnc.reset(channel=1)
+    assert example.pnc.information(Tab.ERRORS) == []
 
 
 def test_an_error_stops_its_channel_alone_and_closes_its_files(example: Example) -> None:

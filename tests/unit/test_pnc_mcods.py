@@ -280,6 +280,9 @@ LONG = "AN OPERATOR IS TO TURN THE PART BY 180 DEGREES AND TO CLAMP IT WITH 40 B
 SCENES = [
     Scene("N1 G70 G1 X5 F100\n", 60, {24: [2540.0], 18: [0], 53: [0, 0, 2], 81: [0, 0, 2], 39: [0], 47: [1, 0, 0]}),
     Scene(f"N1 (MSG,{LONG})\nN2 G1 X5 F10\n", 60, {28: LONG[:80], 24: [10.0], 39: [0], 32: [3, 1], 87: [0]}),
+    Scene("N1 G1 X5 F600\nN2 (MSG,LATER) G1 X9\nN3 (MSG,LAST)\nN4 X20\n", 400, {28: ""}),  # prepared ahead
+    Scene("N1 G1 X5 F600\nN2 (MSG,LATER) G1 X9\nN3 (MSG,LAST)\nN4 X20\n", 700, {28: "LATER"}),
+    Scene("N1 G1 X5 F600\nN2 (MSG,LATER) G1 X9\nN3 (MSG,LAST)\nN4 X20\n", 1100, {28: "LAST"}),
     Scene("N1 G0 X300\n", 90, {3: [30000.0, None, 30000.0], 32: [3, 1], 79: [0, 1, 1], 7: [10000.0]}),
     Scene("N1 G1 X-40 Z-9 F3000\n", 400, {83: "to go", 76: [-40.0, -9.0, 0.0], 77: [-40.0, -9.0, 0.0], 24: [3000.0]}),
     Scene("N1 G4 F0.1\nN2 G1 X1 F6000\nN3 G4 F0.5\nN4 X2\n", 900, {39: [0], 87: [0], 32: [1, 3], 47: [0, 0, 0]}),

@@ -282,10 +282,8 @@ class Control:
         self._time.watch = watch
 
     def _sub_program(self, number: int) -> ProgramText | None:
-        for name in self.data.sub_program_names:
-            if (found := name.format(number=number)) in self.programs:
-                return self.programs.text(found)
-        return None
+        names = (name.format(number=number) for name in self.data.sub_program_names)
+        return next((found for found in map(self.programs.find, names) if found is not None), None)
 
     def _meet(self, path: int, event: Event) -> bool:
         """Hand the auxiliary functions of a block to spindle and PLC; return whether the path has to wait for them."""

@@ -14,6 +14,7 @@ from polycnc.cnc._stops import Stopper, boundaries
 from polycnc.kernel import (
     NO_LIMIT,
     READY,
+    WITH_SPINDLE,
     earliest_limit,
     free_slots,
     measure_queue,
@@ -77,6 +78,14 @@ class PathFeed:
         """Whether there is anything to prepare now; the state of the path decides, not who asks how often."""
         row = self.row
         return self._due or self.channel.paused or bool(row["planned"] - row["head"] <= row["low_water"])
+
+    @property
+    def cuts_thread(self) -> bool:
+        """Whether the segment that is executed, or comes next, goes with the spindle."""
+        row = self.row
+        head = int(row["head"])
+        slot = int(row["base"]) + head % int(row["capacity"])
+        return head < row["prepared"] and bool(self.machine.state.seg.row["flags"][slot] & WITH_SPINDLE)
 
     def wake(self) -> None:
         """Take note that what preparation has waited for has come."""

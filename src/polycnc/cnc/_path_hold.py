@@ -24,8 +24,10 @@ class PathHold:
         stands = self.moment.state is RunState.STOPPED_AT_BLOCK
         met = self.moment.probing is not None and self.moment.probing.met and self.moment.probing.deletes
         stops = stands or met or self.moment.stop is not None or self.has_met_enough
-        hold = self.moment.hold or stops or self.moment.unanswered
-        if bool(self.row["hold"]) != hold:
+        hold = kernel.HOLD if self.moment.hold or stops or self.moment.unanswered else 0
+        if hold and self.moment.hold_later and not stops and not self.moment.unanswered:
+            hold = kernel.HOLD_LATER
+        if self.row["hold"] != hold:
             self.row["hold"] = hold
             if self.row["state"] == kernel.RUNNING:
                 self.feed.replan()

@@ -90,8 +90,10 @@ class PathRunner:
 
     @property
     def at_rest(self) -> bool:
-        """Whether the path stands."""
-        return bool(self.row["state"] != kernel.RUNNING)
+        """Whether the path stands; a thread goes on where its spindle turns round, though a hold waits for its end."""
+        if self.row["state"] == kernel.RUNNING:
+            return False
+        return not (self.moment.state is RunState.HOLD and self.moment.hold_later and self.feed.cuts_thread)
 
     @property
     def executed_tag(self) -> int:
@@ -214,17 +216,22 @@ class PathRunner:
         if moment.state is RunState.ACTIVE and moment.suppressed.hold and not at_once:
             moment.held_back = True
         elif moment.state is RunState.ACTIVE:
-            moment.hold = True
+            moment.hold, moment.hold_later = True, not at_once
             moment.state = RunState.HOLD
+            self.path_hold.apply()
+        elif at_once and moment.hold_later:
+            moment.hold_later = False
             self.path_hold.apply()
 
     def go(self, step: Step) -> None:
         """Go on from where the program stands, as far as `step` says."""
-        within = self.moment.state is RunState.HOLD and self.row["state"] in (kernel.RUNNING, kernel.HELD)
+        under_way = self.moment.unanswered or self.row["state"] in (kernel.RUNNING, kernel.HELD)
+        within = self.moment.state is RunState.HOLD and under_way
         record = self.executed_tag
         self.take_switch()
         self.events.pass_stop()
         self.moment.hold, self.moment.state = False, RunState.ACTIVE
+        self.moment.hold_later = False
         if within:
             self._step_from(step, record)
         else:
@@ -331,7 +338,7 @@ class PathRunner:
     def _stop_by(self, text: str, code: str) -> None:
         self.moment.alarm = RunAlarm(text, code, self.executed_tag, self.machine.clock.cycles)
         self.moment.state = RunState.ALARM
-        self.moment.hold = True
+        self.moment.hold, self.moment.hold_later = True, False
         self.path_hold.apply()
 
 

@@ -80,6 +80,7 @@ class ProgramMemory:
         self._store = store
         self._clock = clock
         self._area = store.area(_PROGRAMS, bytes)
+        self._found: tuple[int, dict[str, ProgramText | None]] = (0, {})
 
     # ------------------------------------------------------------------ reading
 
@@ -108,6 +109,19 @@ class ProgramMemory:
             ControlError: There is no such program, or it is UTF-16.
         """
         return ProgramText(name, self.read(name))
+
+    def find(self, name: str) -> ProgramText | None:
+        """Return a program to call it, None if there is none; what does not change is read once.
+
+        Raises:
+            ControlError: It is UTF-16.
+        """
+        if self._found[0] != self.revision:
+            self._found = self.revision, {}
+        found = self._found[1]
+        if name not in found:
+            found[name] = self.text(name) if name in self else None
+        return found[name]
 
     def entry(self, name: str) -> ProgramEntry:
         """Return the directory line of a program.

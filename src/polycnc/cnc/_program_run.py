@@ -183,7 +183,7 @@ class ProgramRun:
         if self._runner.row["state"] == kernel.IDLE:
             return
         self._moment.dropping = True
-        self._moment.hold = True
+        self._moment.hold, self._moment.hold_later = True, False
         self._runner.path_hold.apply()
         self._runner.look()
 

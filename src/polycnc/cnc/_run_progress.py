@@ -14,7 +14,8 @@ from polycnc.nc import Event, Suppressed
 class RunProgress:
     """What a run is doing, what is switched on for it, and what it has met on the path.
 
-    `hold` is a feed hold; a stop holds the path as well. `held_back` is one that comes when the program lets it.
+    `hold` is a feed hold; a stop holds the path as well. One that comes `hold_later` lets a thread be cut to its end,
+    `held_back` is one that comes when the program lets it.
     `stop` is the stop at which the program stands, `met` the segment count and the tag of the event at which the
     path rests, `unanswered` an auxiliary function at which it stands, `barrier` that preparation waits for it.
     `approach` is where a searched block begins, and its line, `searched` where a calculated search has come to.
@@ -30,6 +31,7 @@ class RunProgress:
     state: RunState = RunState.READY
     alarm: RunAlarm | None = None
     hold: bool = False
+    hold_later: bool = False
     held_back: bool = False
     stop: Event | None = None
     met: tuple[int, int] | None = None

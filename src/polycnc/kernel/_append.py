@@ -9,7 +9,7 @@ from __future__ import annotations
 from polycnc.kernel._axis_limits import AxisLimits
 from polycnc.kernel._blend_arcs import round_to_arc
 from polycnc.kernel._jit import compiled, entry
-from polycnc.kernel._lines import appended, attach, mark_last, set_ends
+from polycnc.kernel._lines import appended, attach, end_thread, mark_last, set_ends
 from polycnc.kernel._overlap import overlap_corner
 from polycnc.kernel._path import Paths, slot
 from polycnc.kernel._segments import STOP, Floats, Segments, set_arc, set_circle3d, set_spline, set_wait
@@ -43,6 +43,7 @@ def append_arc(
 
     With a path tolerance the corner before it is rounded where that is possible.
     """
+    end_thread(seg.row, paths.row, g, flags)
     sweep_rad = round_to_arc(
         seg, paths, g, limits, end, (axis_p, axis_q), (center_p, center_q), sweep_rad, speed_mm_s, tag
     )

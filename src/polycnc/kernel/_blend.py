@@ -40,6 +40,7 @@ from polycnc.kernel._segments import (
     CIRCLE3D_LENGTH,
     RAPID,
     ROUNDING,
+    WITH_SPINDLE,
     Floats,
     Segments,
     set_common,
@@ -178,7 +179,7 @@ def _append_arc(
     line = seg.row[k]
     seg.end[k, p], seg.end[k, q], seg.end[k, r] = start[0], start[1], start[2]
     line["length"] -= cut_mm
-    flags = ROUNDING | line["flags"] & RAPID
+    flags = ROUNDING | line["flags"] & (RAPID | WITH_SPINDLE)
     feed = feed_along(paths.row[g], line["feed_mm_s"], speed_mm_s)
     set_common(seg, arc, seg.end[k], seg.end[k], feed, flags, tag)
     circle3d_point(geo, 1.0, start)

@@ -192,7 +192,7 @@ def plan_again(seg: Segments, paths: Paths, g: int, dt: float) -> None:
     if path["state"] != RUNNING:
         return
     if row["kind"] == WAIT:
-        if path["hold"] != 0:
+        if is_held(path, row):
             path["state"] = HELD
         return
     if follows(seg, paths, g):  # it looks anew in every cycle

@@ -43,6 +43,7 @@ from polycnc.kernel._segments import (
     STOP,
     SWEEP_RAD,
     WAIT,
+    WITH_SPINDLE,
     WORK_POINT,
     Floats,
     Segments,
@@ -75,6 +76,8 @@ def feed_in_force(row: np.void, path: np.void) -> float:
         return float(feed)
     if path["dry_feed_mm_s"] > 0.0:
         feed = path["dry_feed_mm_s"]
+    if row["flags"] & WITH_SPINDLE:
+        return float(feed)
     return float(feed * path["override"] if path["override"] > 0.0 else feed)
 
 

@@ -12,7 +12,17 @@ import numpy.typing as npt
 
 from polycnc.kernel._jit import compiled
 from polycnc.kernel._path import Paths, slot, slot_of
-from polycnc.kernel._segments import CORNER_STOP, LAST, RAPID, STOP, WAIT, Floats, Segments, set_line
+from polycnc.kernel._segments import (
+    CORNER_STOP,
+    LAST,
+    RAPID,
+    STOP,
+    WAIT,
+    WITH_SPINDLE,
+    Floats,
+    Segments,
+    set_line,
+)
 
 Rows: TypeAlias = npt.NDArray[np.void]
 
@@ -44,9 +54,19 @@ def set_ends(row: Rows, path: Rows, g: int, flags: int) -> None:
     """Let a path come to rest where positioning meets feed motion, and in the corners of an exact path."""
     if path[g]["tolerance_mm"] < 0.0:
         row[slot_of(path, g, path[g]["tail"])]["flags"] |= CORNER_STOP
+    end_thread(row, path, g, flags)
     if path[g]["tail"] > path[g]["head"]:
         k = slot_of(path, g, path[g]["tail"] - 1)
         if (row[k]["flags"] ^ flags) & RAPID:
+            row[k]["flags"] |= STOP
+
+
+@compiled
+def end_thread(row: Rows, path: Rows, g: int, flags: int) -> None:
+    """Let a path rest, in a corner that is not rounded, where a motion with the spindle begins or ends."""
+    if path[g]["tail"] > path[g]["head"]:
+        k = slot_of(path, g, path[g]["tail"] - 1)
+        if (row[k]["flags"] ^ flags) & WITH_SPINDLE:
             row[k]["flags"] |= STOP
 
 

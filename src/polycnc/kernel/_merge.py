@@ -10,10 +10,10 @@ from __future__ import annotations
 from polycnc.kernel._axis_limits import AxisLimits
 from polycnc.kernel._blend import blend_corner, counting_axes
 from polycnc.kernel._jit import compiled, entry
-from polycnc.kernel._lines import add_line
+from polycnc.kernel._lines import add_line, end_thread
 from polycnc.kernel._overlap import overlap_corner
 from polycnc.kernel._path import BLEND_COLUMNS, MOST_MERGED, SCRATCH_POINTS, Paths, slot
-from polycnc.kernel._segments import RAPID, STOP, Floats, Segments, set_line
+from polycnc.kernel._segments import RAPID, STOP, WITH_SPINDLE, Floats, Segments, set_line
 
 NOT_MERGED = -1
 
@@ -139,8 +139,9 @@ def append_line(
     row = paths.row[g]
     if row["merged"] > 0:
         close_line(seg, paths, g, limits)
-    merges = row["merge_mm"] > 0.0 and row["tolerance_mm"] > 0.0 and not flags & (RAPID | STOP)
+    merges = row["merge_mm"] > 0.0 and row["tolerance_mm"] > 0.0 and not flags & (RAPID | STOP | WITH_SPINDLE)
     if not merges:
+        end_thread(seg.row, paths.row, g, flags)
         blend_corner(seg, paths, g, limits, end, speed_mm_s, tag)
     added = add_line(
         seg.row, seg.start, seg.end, paths.row, paths.queued, g, limits.feed_axis, end, speed_mm_s, flags, tag

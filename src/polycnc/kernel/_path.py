@@ -12,7 +12,7 @@ import numpy.typing as npt
 
 from polycnc.kernel._jit import compiled, entry
 from polycnc.kernel._ramps import ALL_REGISTERS
-from polycnc.kernel._segments import RAPID, WAIT, Floats
+from polycnc.kernel._segments import RAPID, WAIT, WITH_SPINDLE, Floats
 
 Ints = npt.NDArray[np.int64]
 
@@ -20,6 +20,8 @@ IDLE = 0  # not started
 READY = 1  # started and at rest: the next segment begins with the next cycle
 RUNNING = 2  # the segment at `head` is being traversed
 HELD = 3  # at rest within a segment, until released
+
+HOLD, HOLD_LATER = 1, 2  # a feed hold: at once; where the motion with the spindle that is under way is over
 
 # What a sample brought.
 STILL = 0  # no motion: idle, held or nothing queued
@@ -110,10 +112,10 @@ PATH_ROW = np.dtype(
         ("entry_zone", np.float64),  # up to which path length in it
         ("speed", np.float64),  # path speed now
         ("tag", np.int64),  # tag of the segment that gave the last setpoint
-        ("flags", np.int8),  # of that segment
+        ("flags", np.int16),  # of that segment
         ("corner_rule", np.int8),  # see `_corner_rules`
         ("state", np.int8),
-        ("hold", np.int8),  # feed hold
+        ("hold", np.int8),  # feed hold: 0, HOLD or HOLD_LATER
         ("pending", np.int8),  # a change waits for the end of the S-shaped ramp that is under way
         ("closed", np.int8),  # nothing will be appended: the last segment ends the path
     ],
@@ -169,9 +171,10 @@ def start_path(paths: Paths, g: int) -> None:
 @compiled
 def is_held(path: np.void, row: np.void) -> bool:
     """Tell whether a path may not follow the segment of this row; an override of 0 leaves waits alone."""
-    if path["hold"] != 0:
+    with_spindle = row["flags"] & WITH_SPINDLE != 0
+    if path["hold"] == HOLD or (path["hold"] == HOLD_LATER and not with_spindle):
         return True
-    if row["kind"] == WAIT:
+    if row["kind"] == WAIT or with_spindle:
         return False
     factor = path["rapid_override"] if row["flags"] & RAPID else path["override"]
     return bool(factor <= 0.0)

@@ -32,6 +32,7 @@ CORNER_STOP = 8  # flag: come to rest at the end unless the next segment goes on
 LAST = 16  # flag: rounded corners lie before it and the path rests at its end, with nothing after
 ROUNDING = 32  # flag: an arc that rounds a corner
 OVERLAPS = 64  # flag: at an end of it is an OVERLAP
+WITH_SPINDLE = 128  # flag: follows the spindle, so no override and no HOLD_LATER acts
 TURN = 4  # flag, set here: no feed axis moves, so length and speed are those of the axes that ride along
 
 GEO = BEZIER_SIZE
@@ -79,7 +80,7 @@ SEGMENT_ROW = np.dtype(
         ("event", np.int64),  # the first of the events that come when it begins
         ("events", np.int32),  # how many
         ("kind", np.int8),
-        ("flags", np.int8),
+        ("flags", np.int16),
     ],
     align=True,
 )

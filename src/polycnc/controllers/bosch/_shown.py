@@ -234,7 +234,7 @@ class Shown:
             Ipo.RUNNING if run.state is RunState.ACTIVE else Ipo.RUNNING_DOWN if running else Ipo.STOPPED
         )
         shown.inch = words.inch
-        shown.message = run.channel.messages.latest
+        shown.message = run.channel.messages.latest(int(row["head"]))
         segment = run.machine.state.seg.row[int(row["base"]) + int(row["head"]) % int(row["capacity"])]
         shown.dwell = bool(running and segment["kind"] == WAIT)
         moving = bool(running and not shown.dwell)

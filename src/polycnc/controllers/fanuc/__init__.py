@@ -10,6 +10,7 @@ from polycnc.controllers.fanuc.device._modes import PowerMateMode
 from polycnc.controllers.fanuc.device._panel import MEMBERS as PANEL_SIGNALS
 from polycnc.controllers.fanuc.device._positions import AxisPositions
 from polycnc.controllers.fanuc.device._power_mate import PowerMate
+from polycnc.controllers.fanuc.device._program_rules import Objection, delete_program, search_program
 from polycnc.controllers.fanuc.device._snapshot import PowerMateSnapshot
 from polycnc.controllers.fanuc.device._state import State, read_state
 from polycnc.controllers.fanuc.device._transfer import Fault, Transfer, TransferError
@@ -25,6 +26,7 @@ __all__ = [
     "Diagnosis",
     "Fault",
     "Kind",
+    "Objection",
     "ParameterRow",
     "PowerMate",
     "PowerMateMode",
@@ -33,9 +35,11 @@ __all__ = [
     "Transfer",
     "TransferError",
     "bit_of",
+    "delete_program",
     "is_macro_alarm",
     "parameter_rows",
     "pmc",
     "read_state",
+    "search_program",
     "shown",
 ]

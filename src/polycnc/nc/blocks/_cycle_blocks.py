@@ -276,6 +276,7 @@ def _items(
         if index not in axes and value != at[index]:
             before, at[index] = tuple(at), value
             items.append(_line(block, before, tuple(at), True))
+    locked = False
     for step in steps:
         before = tuple(at)
         match step.kind:
@@ -287,13 +288,18 @@ def _items(
                 items.append(_line(block, before, tuple(at), True))
             case StepKind.FEED_AXIS:
                 at[axes[2]] = step.level_mm + offset
-                items.append(_line(block, before, tuple(at), False, step.feed_mm_s))
+                line = _line(block, before, tuple(at), False, step.feed_mm_s)
+                if step.synchronous:
+                    line = replace(line, feed=replace(line.feed, with_spindle=True))
+                items.append(line)
             case StepKind.DWELL:
-                items.append(Wait(step.duration_s, block.line))
+                items.append(Wait(step.duration_s, block.line, with_spindle=locked))
+            case StepKind.OVERRIDE_OFF | StepKind.OVERRIDE_ON:
+                locked = step.kind is StepKind.OVERRIDE_OFF
             case _:
                 event = _event(block, step.kind)
                 if event:
-                    items.append(Wait(0.0, block.line, (event,)))
+                    items.append(Wait(0.0, block.line, (event,), with_spindle=locked))
     return items
 
 

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+from collections import deque
+from collections.abc import Callable
 from dataclasses import dataclass, field
+from typing import TypeAlias
 
 _SHOWN = "MSG: "
 
@@ -16,36 +19,59 @@ class Message:
     count: int = 1
 
 
+SavedMessages: TypeAlias = tuple[dict[str, Message], str, tuple[tuple[int, str], ...]]
+
+
+def _at_once() -> int:
+    return 0
+
+
 @dataclass
 class Messages:
-    """Collect messages about the present `line`, each text once with a count. `latest` is what was shown last."""
+    """Collect messages about the present `line`, each text once with a count.
+
+    `ahead` counts the segments before the block that is being prepared: its message is shown where the path has got
+    to it.
+    """
 
     line: int = 0
-    latest: str = ""
+    ahead: Callable[[], int] = _at_once
+    _latest: str = ""
+    _coming: deque[tuple[int, str]] = field(default_factory=deque)
     _found: dict[str, Message] = field(default_factory=dict)
 
     def add(self, text: str) -> None:
         """Add a message about the present line."""
-        self.note(text, self.line)
+        self._note(text, self.line, self.ahead())
 
     def note(self, text: str, line: int) -> None:
-        """Add a message about any line."""
+        """Add a message about any line, which is shown at once."""
+        self._note(text, line, 0)
+
+    def latest(self, head: int) -> str:
+        """Return what was shown last where the path has traversed `head` segments."""
+        while self._coming and self._coming[0][0] <= head:
+            self._latest = self._coming.popleft()[1]
+        return self._latest
+
+    def _note(self, text: str, line: int, ahead: int) -> None:
         old = self._found.get(text)
         self._found[text] = Message(text, line) if old is None else Message(text, old.line, old.count + 1)
-        self._show(text)
+        if not text.startswith(_SHOWN):
+            return
+        if ahead:
+            self._coming.append((ahead, text.removeprefix(_SHOWN)))
+        else:
+            self._latest = text.removeprefix(_SHOWN)
 
-    def _show(self, text: str) -> None:
-        if text.startswith(_SHOWN):
-            self.latest = text.removeprefix(_SHOWN)
+    def snapshot(self) -> SavedMessages:
+        """Return all messages, the one shown last and those to come, to go back to."""
+        return dict(self._found), self._latest, tuple(self._coming)
 
-    def snapshot(self) -> tuple[dict[str, Message], str]:
-        """Return all messages and the one shown last, to go back to."""
-        return dict(self._found), self.latest
-
-    def restore(self, saved: tuple[dict[str, Message], str]) -> None:
+    def restore(self, saved: SavedMessages) -> None:
         """Go back to a snapshot."""
-        found, self.latest = saved
-        self._found = dict(found)
+        found, self._latest, coming = saved
+        self._found, self._coming = dict(found), deque(coming)
 
     def all(self) -> list[Message]:
         """Return all messages in the order in which they first came up."""

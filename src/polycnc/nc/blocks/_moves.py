@@ -6,7 +6,7 @@ the line of the block that an item comes from, `tag` the reference of its record
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from enum import StrEnum
 from typing import TypeAlias
 
@@ -26,10 +26,14 @@ class Stop(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class Feed:
-    """Say how fast a move goes: a path speed, or a time for the whole move (inverse time)."""
+    """Say how fast a move goes: a path speed, or a time for the whole move (inverse time).
+
+    One `with_spindle` cuts a thread: neither an override nor a feed hold acts before it is over.
+    """
 
     speed_mm_s: float = 0.0
     duration_s: float = 0.0
+    with_spindle: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -109,7 +113,7 @@ class Wait:
     when the next move begins.
 
     A `stop` is a point where the program may stand: then preparation goes on when whoever runs the path says so.
-    `message` is what the operator is told there.
+    `message` is what the operator is told there. One `with_spindle` is part of a thread, see `Feed`.
     """
 
     duration_s: float
@@ -119,10 +123,11 @@ class Wait:
     tag: int = 0
     message: str = ""
     passes: bool = False
+    with_spindle: bool = False
 
     def tagged(self, tag: int) -> Wait:
         """Return the same wait as part of another block."""
-        return Wait(self.duration_s, self.line, self.events, self.stop, tag, self.message, self.passes)
+        return replace(self, tag=tag)
 
 
 Move: TypeAlias = Line | Arc

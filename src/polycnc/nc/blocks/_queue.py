@@ -13,6 +13,7 @@ from polycnc.kernel import (
     NOT_MERGED,
     RAPID,
     STOP,
+    WITH_SPINDLE,
     AxisLimits,
     Paths,
     Segments,
@@ -173,7 +174,11 @@ class QueueWriter:
 
     def _put_line(self, item: Line) -> None:
         speed = math.inf if item.rapid else self._speed(item.feed, self._line_length(item))
-        flags = (RAPID if item.rapid else 0) | (STOP if item.exact_stop else 0)
+        flags = (
+            (RAPID if item.rapid else 0)
+            | (STOP if item.exact_stop else 0)
+            | (WITH_SPINDLE if item.feed.with_spindle else 0)
+        )
         row, end = self.paths.row[self.path], np.array(item.end)
         if row["merged"] > 0:
             before = merge_line(self.seg, self.paths, self.path, self.limits, end, speed, flags, item.tag)
@@ -220,6 +225,7 @@ class QueueWriter:
             self._put_in_step([Event(word, item.line, tag=item.tag) for word in item.events])
             return
         in_step = self.withdraw_in_step()
+        flags = WITH_SPINDLE if item.with_spindle else 0
         words = item.events or (("",) if item.stop is not None else ())
         answered = self.answers and bool(item.events)
         stands = self.stands_at_stops and item.stop in (Stop.PROGRAM, Stop.OPTIONAL)
@@ -228,12 +234,12 @@ class QueueWriter:
             time_s = item.duration_s if answered and word is words[-1] else 0.0
             barrier = answered and not stops and word is words[-1]
             event = Event(word, item.line, item.stop, time_s, item.tag, item.message, barrier)
-            self._append_wait(0.0, self._next_event, item.tag, passes=event.passes)
+            self._append_wait(0.0, self._next_event, item.tag, passes=event.passes, flags=flags)
             self._note(event)
         if stops or answered:
             self.stops += 1
         if (item.duration_s > 0.0 or not words) and not answered:
-            self._append_wait(item.duration_s, NO_EVENT, item.tag)
+            self._append_wait(item.duration_s, NO_EVENT, item.tag, flags=flags)
         self._put_in_step(in_step)
 
     def _put_in_step(self, events: list[Event]) -> None:
@@ -251,6 +257,11 @@ class QueueWriter:
         waiting, row["next_events"] = int(row["next_events"]), 0
         self._next_event -= waiting
         return [self.events.pop(self._next_event + place) for place in range(waiting)]
+
+    @property
+    def put_count(self) -> int:
+        """How many segments have been put, as far as is known of those that wait for room."""
+        return int(self.paths.row[self.path]["tail"]) + len(self.backlog)
 
     @property
     def next_event(self) -> int:
@@ -275,8 +286,13 @@ class QueueWriter:
         if self.paths.row[self.path]["merged"] > 0:
             close_line(self.seg, self.paths, self.path, self.limits)
 
-    def _append_wait(self, duration_s: float, event: int, tag: int, *, passes: bool = False) -> None:
+    def _append_wait(
+        self, duration_s: float, event: int, tag: int, *, passes: bool = False, flags: int = 0
+    ) -> None:
         append_wait(self.seg, self.paths, self.path, duration_s, event, tag, int(passes))
+        if flags:
+            row = self.paths.row[self.path]
+            self.seg.row["flags"][row["base"] + (row["tail"] - 1) % row["capacity"]] |= flags
 
     def with_speed(self, item: QueueItem) -> QueueItem:
         """Return an item whose feed is the speed that its duration gives it."""

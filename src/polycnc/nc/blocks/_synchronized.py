@@ -60,7 +60,7 @@ def moves(block: BlockContext) -> list[QueueItem]:
     direction = block.after.spindle.direction
     return [
         there,
-        Wait(0.0, block.line, (_TURN[-direction],)),
+        Wait(0.0, block.line, (_TURN[-direction],), with_spindle=True),
         Line(end, block.start, feed, False, True, block.line),
         Wait(0.0, block.line, (_TURN[direction],)),
     ]
@@ -91,7 +91,7 @@ def _feed(block: BlockContext, start: Point, end: Point, lead: float) -> Feed:
                 "Turn the spindle slower.",
                 block.move_word,
             )
-    return Feed(speed_mm_s=speed)
+    return Feed(speed_mm_s=speed, with_spindle=True)
 
 
 # ------------------------------------------------------------------ G76

@@ -147,4 +147,4 @@ def thread_feed(block: BlockContext, start: AxisPoint, end: AxisPoint, own_lead:
                 "Turn the spindle slower.",
                 block.move_word,
             )
-    return Feed(speed_mm_s=speed * math.hypot(*ways) / ways[longest])
+    return Feed(speed_mm_s=speed * math.hypot(*ways) / ways[longest], with_spindle=True)

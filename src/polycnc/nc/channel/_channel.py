@@ -65,7 +65,7 @@ class Channel:
         options = options or ChannelOptions()
         self.dialect, self.machine, self.path = dialect, machine, path
         self.on_filled: Callable[[], None] | None = None  # looks at the queue before it is executed
-        self.messages = Messages()
+        self.messages = Messages(ahead=lambda: self.writer.put_count)
         self.suppressed = Suppressed()
         text_rules = dialect.text_rules()
         rules = scan_rules(text_rules)

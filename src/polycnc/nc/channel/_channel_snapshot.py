@@ -13,7 +13,7 @@ from polycnc.nc.blocks._coordinates import Coordinates
 from polycnc.nc.blocks._corners import Corner
 from polycnc.nc.blocks._cycles import CycleWords
 from polycnc.nc.blocks._events import Event
-from polycnc.nc.blocks._messages import Message
+from polycnc.nc.blocks._messages import Message, SavedMessages
 from polycnc.nc.blocks._moves import Arc, Feed, Line, Spline, Stop, Wait
 from polycnc.nc.blocks._nurbs_curve import Nurbs
 from polycnc.nc.blocks._offset_geometry import Leg
@@ -46,7 +46,7 @@ class ChannelSnapshot(NamedTuple):
     calls_within: tuple[Call, ...]
     blocks: int
     errors: tuple[ProgramError, ...]
-    messages: tuple[dict[str, Message], str]
+    messages: SavedMessages
     flags: tuple[bool, bool]
     turns: SavedTurns
     suppressed: Suppressed

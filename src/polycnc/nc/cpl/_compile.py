@@ -279,15 +279,15 @@ class Compiler:
 
     def _assign_text(self, target: Name, value: Expression, boxes: list[tuple[str, Name]]) -> None:
         python, index = self._values.element(target)
-        stored = self._values.stored(value)
-        new = makes_text(value)
+        stored, put = self._values.stored(value), "put_new" if makes_text(value) else "put"
         if target.variable.scope == "permanent":
             if isinstance(value, Word):
                 raise Flaw(value.at, INVALID_ASSIGNMENT.what, "a permanent variable cannot be deleted")
             stored = f"kept({stored})"
         self._stores.open_boxes(boxes)
         place = f"{python}[{index}]" if index else python
-        self._out.put(f"{place} = {'put_new' if new else 'put'}({place}, {stored})")
+        self._stores.guard(target, place)
+        self._out.put(f"{place} = {put}({place}, {stored})")
         self._stores.close_boxes(boxes)
 
     def _set_system(self, statement: Assign, target: Call) -> str:

@@ -65,6 +65,11 @@ def dimension_field(old: object, kind: Kind, sizes: tuple[int, ...]) -> Field:
     return old
 
 
+def index_needed(name: str) -> Fault:
+    """Return the fault of a value that is assigned to a field as a whole."""
+    return Fault(INVALID_VARIABLE, f"{name} is a field: write the index of its element, {name}(1)=...")
+
+
 def _elements(sizes: tuple[int, ...]) -> int:
     return sizes[0] * (sizes[1] if len(sizes) == 2 else 1)
 

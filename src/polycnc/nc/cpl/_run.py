@@ -13,7 +13,7 @@ from polycnc.language import Flaw, Traced
 from polycnc.machine import SnapshotError
 from polycnc.nc.cpl import _numbers, _strings
 from polycnc.nc.cpl._faults import CPL_IN_UNLINKED, INVALID_PARAMETER, INVALID_VARIABLE, Fault
-from polycnc.nc.cpl._fields import Field, dimension_field
+from polycnc.nc.cpl._fields import Field, dimension_field, index_needed
 from polycnc.nc.cpl._functions import OWN
 from polycnc.nc.cpl._host import (
     OMITTED,
@@ -341,7 +341,8 @@ _SCOPE: dict[str, object] = {
     "to_integer": _numbers.to_integer, "to_real": _numbers.to_real, "to_double": _numbers.to_double,
     "to_boolean": _numbers.to_boolean, "text_of": _strings.text_of, "put": _strings.put,
     "put_new": _strings.put_new, "put_part": _strings.put_part, "dimension": _strings.dimension,
-    "dimension_field": dimension_field, "section": _strings.section, "added": _strings.added,
+    "dimension_field": dimension_field, "Field": Field, "index_needed": index_needed,
+    "section": _strings.section, "added": _strings.added,
     "parameter": _parameter, "parameter_field": _parameter_field, "kept": _kept, "assigned": _assigned,
     "duration": _duration, "as_word": _as_word, "inserted": _inserted, "ic_condition": _ic_condition,
 }  # fmt: skip

@@ -88,6 +88,7 @@ class Stores:
         if kind == "S":
             python, index = place or self.values.element(target)
             whole = f"{python}[{index}]" if index else python
+            self.guard(target, whole)
             self._out.put(f"{whole} = put({whole}, {typed.python.text})")
             return
         if given == "S" or ((given == "B") != (kind == "B") and given not in ("X", "N")):
@@ -100,6 +101,7 @@ class Stores:
             self._out.put(f"{key} = {index}", f"{python}[{key}]")  # so that a wrong index is found first
             index = key
         whole = f"{python}[{index}]" if index else python
+        self.guard(target, whole)
         if target.variable.scope == "permanent":
             if given == "N":
                 raise Flaw(target.at, INVALID_ASSIGNMENT.what, "a permanent variable cannot be deleted")
@@ -107,6 +109,11 @@ class Stores:
                 typed = typed._replace(python=Python(f"kept({typed.python.text})"))
         direct = target.variable.scope in ("local", "parameter") and not index
         self._put_value(whole, direct, kind, typed)
+
+    def guard(self, target: Name, place: str) -> None:
+        """Write that a field of the whole control or program, which another text may declare, is not replaced."""
+        if target.variable.scope in ("permanent", "global") and not target.indices:
+            self._out.put(f"if {place}.__class__ is Field: raise index_needed({target.variable.name!r})")
 
     def _put_value(self, place: str, direct: bool, kind: str, typed: Typed) -> None:
         put, text, given = self._out.put, typed.python.text, typed.kind

@@ -12,7 +12,7 @@ from polycnc.controllers.fanuc.wire import CNC, Content, Request, Value8, layout
 from polycnc.servers.focas._profile import Profile
 
 NOT_THERE, LENGTH, NUMBER, ATTRIBUTE, DATA, NO_OPTION, PROTECTED = range(1, 8)
-WRONG_PATH, REJECTED = 11, 13
+WRONG_PATH, REJECTED, BUSY = 11, 13, -1
 """Codes that clients get, by the names of the function library."""
 ALL = -1
 MOST_NUMBERS = 433

@@ -11,6 +11,7 @@ from polycnc.controllers.fanuc import Fault, PowerMate, PowerMateMode, Transfer,
 from polycnc.controllers.fanuc.wire import REPLY_SIZE, Reply, Request, layout_of
 from polycnc.errors import ProtocolError
 from polycnc.servers.focas._command import (
+    BUSY,
     DATA,
     LENGTH,
     NO_OPTION,
@@ -31,7 +32,7 @@ _TRANSFER = 1
 _SIZES = (32, 8)
 _RECORD = 32
 _UPLOAD = re.compile(r"(?:.*/)?O(\d{1,4})(?:-O(\d{1,4}))?$")
-_BUSY, _RESET, _OVERFLOW = -1, -2, 8
+_RESET, _OVERFLOW = -2, 8
 _BAD_NAME, _BAD_TEXT, _TV, _FULL, _EXISTS, _SELECTED = 1, 1, 2, 3, 4, 5
 _COUNT = 2
 _FAULTS = {
@@ -149,7 +150,7 @@ class FocasControl:
             control.transfer is not None or control.programs.background_edit or control.power.blocks_transfers
         )
         if busy or control.mode is PowerMateMode.MDI:
-            return Status(_BUSY)
+            return Status(BUSY)
         if control.programs.key_protects:
             return Status(PROTECTED)
         self._transfer = control.begin_transfer(owner=self)

@@ -5,9 +5,11 @@ from __future__ import annotations
 import re
 
 from polycnc.cnc import ProgramEntry
+from polycnc.controllers.fanuc import Objection, delete_program, search_program
 from polycnc.controllers.fanuc.wire import Content, Request, text
 from polycnc.servers.focas._command import (
     ATTRIBUTE,
+    BUSY,
     DATA,
     LENGTH,
     PROTECTED,
@@ -21,6 +23,7 @@ from polycnc.servers.focas._command import (
 from polycnc.units import whole
 
 _NO_SUCH_PROGRAM = 1
+_OBJECTIONS = {Objection.BUSY: BUSY, Objection.MISSING: DATA, Objection.PROTECTED: PROTECTED}
 
 
 @answers(0x1C)
@@ -91,33 +94,25 @@ def directory(view: View, request: Request) -> Content:
 
 @answers(0x03, writes=True)
 def select(view: View, request: Request) -> Content:
-    """Select a program."""
-    _select(view, request.arguments[0], RefusedError(LENGTH, _NO_SUCH_PROGRAM))
+    """Select a program in MEM and EDIT, in other modes only look for it."""
+    _object(
+        search_program(view.control, request.arguments[0]), missing=RefusedError(LENGTH, _NO_SUCH_PROGRAM)
+    )
     return None
-
-
-def _select(view: View, number: int, missing: RefusedError) -> None:
-    if number not in view.control.programs:
-        raise missing
-    view.control.select_program(number)
 
 
 @answers(0x05, writes=True)
 def delete(view: View, request: Request) -> Content:
     """Delete a program that is neither selected nor protected."""
-    _delete(view, request.arguments[0])
+    _object(delete_program(view.control, request.arguments[0]))
     return None
 
 
-def _delete(view: View, number: int) -> None:
-    control = view.control
-    if number not in control.programs or number == control.programs.selected:
-        raise RefusedError(DATA)
-    if control.transfer is not None or control.power.blocks_transfers or control.programs.background_edit:
-        raise RefusedError(REJECTED)
-    if control.programs.key_protects or control.programs.parameter_protects(number):
-        raise RefusedError(PROTECTED)
-    control.programs.delete(number)
+def _object(objection: Objection | None, missing: RefusedError | None = None) -> None:
+    if objection is Objection.MISSING and missing is not None:
+        raise missing
+    if objection is not None:
+        raise RefusedError(_OBJECTIONS[objection])
 
 
 @answers(0x01, writes=True)
@@ -238,14 +233,17 @@ def add(view: View, request: Request) -> Content:
 @answers(0xB6, writes=True)
 def remove(view: View, request: Request) -> Content:
     """Delete the program of a path."""
-    _delete(view, _number(_asked(request)))
+    _object(delete_program(view.control, _number(_asked(request))))
     return None
 
 
 @answers(0xBA, writes=True)
 def select_main(view: View, request: Request) -> Content:
     """Select the program of a path."""
-    _select(view, _number(_asked(request)), RefusedError(DATA))
+    number = _number(_asked(request))
+    if number not in view.control.programs:
+        raise RefusedError(DATA)
+    view.control.select_program(number)
     return None
 
 

@@ -7,6 +7,12 @@ from typing import Annotated, Any, TypeAlias
 from polycnc.cnc import ControlError, Refusal
 from polycnc.controllers.fanuc.device._modes import PowerMateMode
 from polycnc.controllers.fanuc.device._power_mate import PowerMate
+from polycnc.controllers.fanuc.device._program_rules import (
+    Objection,
+    delete_program,
+    holds_programs,
+    search_program,
+)
 from polycnc.controllers.fanuc.device._programs import FIRST, LAST
 from polycnc.controllers.fanuc.device._transfer import Fault, Transfer, TransferError, Upload
 from polycnc.controllers.fanuc.library._call import call
@@ -23,7 +29,7 @@ MDI_MOST = 199
 _INFO_LENGTHS = {0: (12,), 1: (31, 32)}
 
 _FAULTS = {Fault.PROTECTED: EW.EW_PROT, Fault.FULL: EW.EW_OVRFLOW, Fault.RESET: EW.EW_RESET}
-_MEM_OR_EDIT = (PowerMateMode.MEM, PowerMateMode.EDIT)
+_OBJECTIONS = {Objection.BUSY: EW.EW_BUSY, Objection.MISSING: EW.EW_DATA, Objection.PROTECTED: EW.EW_PROT}
 
 
 def _code(fault: Fault) -> EW:
@@ -130,35 +136,14 @@ def cnc_upend(link: Link) -> EW:
 # ---------------------------------------------------------------------- memory
 
 
-def _in_operation(device: PowerMate) -> bool:
-    """Tell whether automatic operation forbids to touch programs: in EDIT and MEM only."""
-    return device.mode in _MEM_OR_EDIT and device.programs.in_operation
+def _answer(objection: Objection | None) -> EW:
+    return EW.EW_OK if objection is None else _OBJECTIONS[objection]
 
 
 @call
 def cnc_search(link: Link, number: SHORT) -> EW:
     """Select a program in MEM and EDIT; in other modes only tell whether it is there (Manual 000, cnc_search)."""
-    device = link.command()
-    download = device.transfer is not None and not device.transfer.compare
-    _refuse_if(_in_operation(device) or download or device.power.blocks_transfers, EW.EW_BUSY)
-    _refuse_if(number not in device.programs, EW.EW_DATA)
-    if device.mode in _MEM_OR_EDIT:
-        try:
-            device.select_program(number)
-        except ControlError:
-            return EW.EW_BUSY
-    return EW.EW_OK
-
-
-def _check_deletable(device: PowerMate) -> None:
-    busy = (
-        device.programs.background_edit
-        or device.transfer is not None
-        or device.power.blocks_transfers
-        or device.mode is PowerMateMode.MDI
-        or _in_operation(device)
-    )
-    _refuse_if(busy, EW.EW_BUSY)
+    return _answer(search_program(link.command(), number))
 
 
 @call
@@ -169,7 +154,7 @@ def cnc_delall(link: Link) -> EW:
     """
     device = link.command()
     _refuse_if(device.mode is PowerMateMode.MEM, EW.EW_BUSY)
-    _check_deletable(device)
+    _refuse_if(holds_programs(device), EW.EW_BUSY)
     _refuse_if(device.programs.key_protects, EW.EW_PROT)
     try:
         kept = device.programs.delete_unprotected()
@@ -181,16 +166,7 @@ def cnc_delall(link: Link) -> EW:
 @call
 def cnc_delete(link: Link, number: SHORT) -> EW:
     """Delete a program (Manual 000, cnc_delete)."""
-    device = link.command()
-    _check_deletable(device)
-    _refuse_if(number == device.programs.selected != 0, EW.EW_BUSY)
-    _refuse_if(number not in device.programs, EW.EW_DATA)
-    _refuse_if(device.programs.key_protects or device.programs.parameter_protects(number), EW.EW_PROT)
-    try:
-        device.programs.delete(number)
-    except ControlError as error:
-        return EW.EW_PROT if error.reason is Refusal.PROTECTED else EW.EW_BUSY
-    return EW.EW_OK
+    return _answer(delete_program(link.command(), number))
 
 
 @call

@@ -59,6 +59,7 @@ _POSITIONS = {
 }
 _DYNAMIC = ("absolute", "machine", "relative", "distance")
 _FIELDS = {0: ("cdata", 0x80), 1: ("cdata", 0x80), 2: ("idata", 0), 3: ("ldata", 0)}
+_WIDTHS = {"cdata": 1, "idata": 2, "ldata": 4}
 _DECIMAL = 0
 _AXIS_HEADER, _SINGLE, _DYNAMIC_HEADER, _PMC_HEADER = 4, 10, 22, 8
 
@@ -297,6 +298,9 @@ def cnc_rdparam(link: RemoteLink, number: int, axis: int, length: int) -> tuple[
     _check(kind in _FIELDS, EW.EW_PROTOCOL)
     made = IODBPSD(datano=number, type=axis)
     name, sign = _FIELDS[kind]
+    if axis != ALL_AXES:
+        values = values[:1]
+    _check(length >= _AXIS_HEADER + _WIDTHS[name] * len(values), EW.EW_LENGTH)
     values = [value - 256 if sign and value >= sign else value for value in values]
     if axis == ALL_AXES:
         room = getattr(made.u, f"{name}s")
@@ -336,7 +340,10 @@ def pmc_wrpmcrng(link: RemoteLink, length: int, buf: bytes) -> EW:
 
 
 def cnc_search(link: RemoteLink, number: int) -> EW:
-    link.ask(Request(0x03, (number, 0, 0, 0)))
+    try:
+        link.ask(Request(0x03, (number, 0, 0, 0)))
+    except Refused as refusal:  # the control answers 2, "no such program" in its detail
+        raise Refused(EW.EW_DATA if refusal.code == EW.EW_LENGTH else refusal.code) from None
     return EW.EW_OK
 
 
