@@ -24,6 +24,7 @@ from polycnc.kernel._segments import (
     RADIUS_END,
     RADIUS_START,
     RISE,
+    ROUNDING,
     SPLINE,
     SWEEP_RAD,
     WORK_POINT,
@@ -120,8 +121,7 @@ def limit_arc_by_share(
     top, accel = _axes_allow(limits, path, tangent, bend)
     if seg.row[k]["flags"] & OVERLAPS:
         accel *= OVERLAP_SHARE
-    radius = min(geo[RADIUS_START], geo[RADIUS_END])
-    radius += geo[RISE] * geo[RISE] / radius
+    radius = _radius_by_rise(geo)
     top = min(top, math.sqrt(CENTRIPETAL_SHARE * accel * radius))
     turning = top * top / (radius * accel)
     left = math.sqrt(1.0 - turning * turning)
@@ -135,6 +135,30 @@ def limit_arc_by_share(
             used = cap * cap * bend[i] / allowed
             accel = min(accel, math.sqrt(1.0 - used * used) * allowed / tangent[i])
     return cap, accel
+
+
+@compiled
+def _radius_by_rise(geo: Floats) -> float:
+    """Return the radius of an arc, made larger by the whole rise of a helix."""
+    radius = min(geo[RADIUS_START], geo[RADIUS_END])
+    return float(radius + geo[RISE] * geo[RISE] / radius)
+
+
+@compiled
+def keep_turning(seg: Segments, k: int, limits: AxisLimits, path: np.void, work: Floats, kept: float) -> None:
+    """Lower the cap of an arc on a path with BY_SHARE so that turning leaves its corner its part; `work`: scratch."""
+    row = seg.row[k]
+    if row["kind"] == ARC and not row["flags"] & ROUNDING:
+        top, accel = axes_allow(seg, k, limits, path, work[0], work[1])
+        if row["flags"] & OVERLAPS:
+            accel *= OVERLAP_SHARE
+        accel *= 1.0 - kept
+        radius = _radius_by_rise(seg.geo[k])
+        top = min(top, math.sqrt(CENTRIPETAL_SHARE * accel * radius))
+        turning = top * top / (radius * accel)
+        row["cap"] = min(row["cap"], top)
+        left = math.sqrt(1.0 - turning * turning) * accel / (1.0 - kept)  # `kept` is taken of it later
+        row["full_accel"] = min(row["full_accel"], left)
 
 
 @compiled

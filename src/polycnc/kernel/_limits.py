@@ -25,6 +25,7 @@ from polycnc.kernel._curve_limits import (
     adds_up,
     curve_bounds,
     gets_faster,
+    keep_turning,
     limit_arc_by_share,
     limit_overlap,
     speed_at_end,
@@ -303,11 +304,13 @@ def _junction_by_share(
     if curved:
         # A corner that the path slows down for anyway is passed slower instead of taking more of the ramps.
         kept = most if needed > most else 1.0 - LEAST_ON_CURVE
+        near = speed * min(1.0, most / needed)
         largest = 1.0
         if is_curved(seg, k):
-            largest = float(_held(seg, k, limits, work, kept))
+            largest = float(_held(seg, k, limits, work, kept, _speed_near(row, path, near)))
         if is_curved(seg, following):
-            largest = min(largest, float(_held(seg, following, limits, work, kept)))
+            near_after = _speed_near(after, path, near)
+            largest = min(largest, float(_held(seg, following, limits, work, kept, near_after)))
         if step > largest:
             step = largest
             most = step / part
@@ -315,19 +318,25 @@ def _junction_by_share(
         speed = 0.0 if rests else speed * most / needed
     row["kept_out"] = min(needed, most)
     after["kept_in"] = row["kept_out"]
+    if row["kept_out"] > STEP_OF_ROUNDING:
+        keep_turning(seg, k, limits, path, work[:2], row["kept_out"])
+        keep_turning(seg, following, limits, path, work[:2], row["kept_out"])
+        speed = min(speed, row["cap"], after["cap"])
     if curved:
-        row["kept_out"] = max(row["kept_out"], _kept_on_curve(seg, k, limits, work, step))
-        after["kept_in"] = max(after["kept_in"], _kept_on_curve(seg, following, limits, work, step))
+        near = _speed_near(row, path, speed)
+        row["kept_out"] = max(row["kept_out"], _kept_on_curve(seg, k, limits, work, step, near))
+        near = _speed_near(after, path, speed)
+        after["kept_in"] = max(after["kept_in"], _kept_on_curve(seg, following, limits, work, step, near))
     if speed > 0.0:
         if step > STEP_OF_ROUNDING:
             speed = float(_apart(seg, k, limits, path, work, speed, step))
         inherited = float(row["kept_in"])
         if inherited > STEP_OF_ROUNDING and not _lasts_beside(row, path["corner_cycle_s"], speed):
-            inherited = min(inherited, _held(seg, k, limits, work, inherited))
+            inherited = min(inherited, _held(seg, k, limits, work, inherited, row["cap"]))
             after["kept_in"] = max(after["kept_in"], inherited)
             if is_curved(seg, following):
                 after["kept_in"] = max(
-                    after["kept_in"], _kept_on_curve(seg, following, limits, work, inherited)
+                    after["kept_in"], _kept_on_curve(seg, following, limits, work, inherited, after["cap"])
                 )
     if after["flags"] & LAST and path["last_share"] > 0.0:
         speed = min(speed, math.sqrt(_last_part(after, path) * after["full_accel"] * after["length"]))
@@ -376,7 +385,9 @@ def _apart(
         if last["junction"] <= 0.0:
             return speed
         kept = max(last["kept_in"], last["kept_out"])
-        if last["kept_out"] > STEP_OF_ROUNDING or _held(seg, k, limits, work, kept) < step * (1.0 - 1e-9):
+        if last["kept_out"] > STEP_OF_ROUNDING or _held(seg, k, limits, work, kept, last["cap"]) < step * (
+            1.0 - 1e-9
+        ):
             before = float(last["junction"])
             break
     gain = accel * cycle
@@ -392,8 +403,17 @@ def _apart(
 
 
 @compiled
-def _held(seg: Segments, k: int, limits: AxisLimits, work: Floats, kept: float) -> float:
-    """Return which part of every axis' acceleration segment `k` leaves alone when its ramps give up `kept`."""
+def _speed_near(row: np.void, path: np.void, speed: float) -> float:
+    """Return the highest speed within two cycles of a corner that is passed with `speed`."""
+    return float(min(row["cap"], speed + 2.0 * path["corner_cycle_s"] * row["full_accel"]))
+
+
+@compiled
+def _held(seg: Segments, k: int, limits: AxisLimits, work: Floats, kept: float, speed: float) -> float:
+    """Return which part of every axis' acceleration segment `k` leaves alone up to a speed.
+
+    Its ramps give up `kept`.
+    """
     if not is_curved(seg, k):
         return kept
     row = seg.row[k]
@@ -401,7 +421,7 @@ def _held(seg: Segments, k: int, limits: AxisLimits, work: Floats, kept: float) 
     held = 1.0
     for i in range(work.shape[1]):
         if work[0, i] > 0.0:
-            turning = row["cap"] * row["cap"] * work[1, i] / limits.acceleration[i]
+            turning = speed * speed * work[1, i] / limits.acceleration[i]
             ramp = (1.0 - kept) * row["full_accel"] * work[0, i] / limits.acceleration[i]
             used = turning + ramp if adds_up(row) else math.sqrt(turning * turning + ramp * ramp)
             held = min(held, 1.0 - used)
@@ -409,8 +429,10 @@ def _held(seg: Segments, k: int, limits: AxisLimits, work: Floats, kept: float) 
 
 
 @compiled
-def _kept_on_curve(seg: Segments, k: int, limits: AxisLimits, work: Floats, step: float) -> float:
-    """Return the part of its ramps that a curve gives up so that all it uses leaves a corner the share `step`.
+def _kept_on_curve(
+    seg: Segments, k: int, limits: AxisLimits, work: Floats, step: float, speed: float
+) -> float:
+    """Return the part of its ramps that a curve gives up so that all it uses up to a speed leaves a corner the share.
 
     Turning takes what it takes, so the ramps give up more than the corner needs.
     """
@@ -421,7 +443,7 @@ def _kept_on_curve(seg: Segments, k: int, limits: AxisLimits, work: Floats, step
     kept = 0.0
     for i in range(work.shape[1]):
         if work[0, i] > 0.0 and row["full_accel"] > 0.0:
-            turning = row["cap"] * row["cap"] * work[1, i] / limits.acceleration[i]
+            turning = speed * speed * work[1, i] / limits.acceleration[i]
             ramp = row["full_accel"] * work[0, i] / limits.acceleration[i]
             left = max(0.0, 1.0 - step - turning)
             if not adds_up(row):

@@ -139,13 +139,19 @@ def _size(
     segment_tangent(seg, k, 1.0, tangents[0])
     segment_tangent(seg, following, 0.0, tangents[1])
     time = leaving / accel
-    rate, rate_after = _rates(tangents, limits, accel, min(accel_after, cap_after / time))
+    if accel_after * time > cap_after and _axes_can(
+        tangents, limits, leaving * accel_after / cap_after, accel_after
+    ):
+        time = (
+            cap_after / accel_after
+        )  # the next has its speed before the other is over, which ends sooner instead
+    rate, rate_after = _rates(tangents, limits, leaving / time, min(accel_after, cap_after / time))
     if max(rate * time / cap, rate_after * time / cap_after) > 1.0:
         rate = rate_after = 2.0 / (1.0 / rate + 1.0 / rate_after)
         time = min(time, cap / rate, cap_after / rate)
     off = _nearer(seg, k, following, limits, tangents, path["tolerance_mm"], (rate, rate_after, time))
-    time, more = _as_quick(tangents, limits, rate, rate_after, time, off)
-    rate, rate_after = more * rate, more * rate_after
+    if off < 1.0:
+        time, rate, rate_after = _as_quick(tangents, limits, rate, rate_after, time, off)
     room = min(0.5 * length, row["length"] - SHORTEST_MM) / (0.5 * rate)
     room = min(room, length_after / rate_after)
     time = min(time, math.sqrt(max(0.0, room)))
@@ -178,18 +184,37 @@ def _nearer(
 @compiled
 def _as_quick(
     tangents: Floats, limits: AxisLimits, rate: float, rate_after: float, time: float, off: float
-) -> tuple[float, float]:
-    """Return in which time a corner is passed nearer by `off`, and with how much more than both rates.
+) -> tuple[float, float, float]:
+    """Return in which time and with which rates a corner is passed nearer by `off`.
 
-    With so much that nothing of the time is lost that the corner saves, if every axis can.
+    With so much more of both rates, or of one, that nothing is lost of the time that the corner saves, if every axis
+    can, else with as much as they can.
     """
     nearer = 0.5 * (math.sqrt(1.0 + 8.0 * off) - 1.0)
     more = off / (nearer * nearer)
-    for _ in range(MOST_TRIES):
-        if more <= 1.0 or _axes_can(tangents, limits, more * rate, more * rate_after):
-            break
-        more = max(1.0, more - 0.1)
-    return time * math.sqrt(off / more), more
+    if not _axes_can(tangents, limits, more * rate, more * rate_after):
+        alone = _more_alone(rate, rate_after, off)
+        if _axes_can(tangents, limits, alone * rate, rate_after):
+            return time / alone, alone * rate, rate_after
+        alone = _more_alone(rate_after, rate, off)
+        if _axes_can(tangents, limits, rate, alone * rate_after):
+            return time / alone, rate, alone * rate_after
+        for _ in range(MOST_TRIES):
+            more = max(1.0, more - 0.1)
+            if _axes_can(tangents, limits, more * rate, more * rate_after):
+                break
+        else:
+            more = 1.0
+    return time * math.sqrt(off / more), more * rate, more * rate_after
+
+
+@compiled
+def _more_alone(rate: float, other: float, off: float) -> float:
+    """Return by how much a rate grows, and the time shrinks, where the corner is passed nearer by `off`."""
+    root, root_other = math.sqrt(rate), math.sqrt(other)
+    way = (root + root_other) / math.sqrt(off)
+    grown = 2.0 * way / (root_other + math.sqrt(other + 4.0 * root * way))
+    return grown * grown
 
 
 @compiled
