@@ -171,7 +171,6 @@ THERE = [
     pytest.param(trochoid(lifted=False), "G64 P0.01", 11.281, id="lines down"),
     pytest.param(trochoid(lifted=False), "G64 P0.1", 10.728, id="lines down, wide"),
     pytest.param(arches(), "G64 P0.05 Q0.02", 12.000, id="arches"),
-    pytest.param(adaptive(), "G64 P0.05 Q0.02", 10.567, id="quarter helices"),
     pytest.param(adaptive(), "G64", 9.593, id="quarter helices, free"),
     pytest.param(adaptive(), "G61", 10.409, id="quarter helices, exact"),
     pytest.param(threads(), "G64 P0.01", 16.916, id="threads"),
