@@ -229,8 +229,8 @@ def gets_faster(row: np.void, geo: Floats) -> bool:
 
 
 @compiled
-def goes_through(row: np.void, geo: Floats, speed: float) -> bool:
+def goes_through(row: np.void, geo: Floats, speed_mm_s: float) -> bool:
     """Tell whether a path that has this speed in a segment may not brake in it."""
     if not gets_faster(row, geo):
         return False
-    return bool(speed > BRAKED_PART * row["feed_mm_s"] * geo[ENTRY] / (1.0 - geo[ENTRY]))
+    return bool(speed_mm_s > BRAKED_PART * row["feed_mm_s"] * geo[ENTRY] / (1.0 - geo[ENTRY]))
