@@ -105,6 +105,12 @@ def made_programs() -> Iterator[tuple[str, str]]:
     yield "scallops", scallops(24, 5.0, 4000.0)
     yield "chain", chain(np.random.default_rng(1), 40, 3000.0)
     yield "feeds", with_feeds(facets, (1500, 3000, 4500, 2400))
+    yield "lifted trochoid", lifted_trochoid(12, 4.0, 1.1, 3900.0)
+    yield "adaptive", adaptive(12, 4.0, 1.0, 4200.0)
+    yield "threads", threads(4, 5.0, 1.5, 2400.0)
+    yield "helical pocket", helical_pocket(8, 6.0, 0.8, 3000.0)
+    yield "cone", cone(24, 0.4, 0.3, 3600.0)
+    yield "waves", waves(12, 9.0, 3000.0)
 
 
 def lines(x: np.ndarray, y: np.ndarray, z: np.ndarray, feed: float) -> str:
@@ -119,6 +125,70 @@ def arcs(turns: int, radius: float, step: float, feed: float) -> str:
     for turn in range(turns):
         found.append(f"G2 X{turn * step - radius:.4f} Y0 I{-radius:g} J0")
         found.append(f"G2 X{turn * step + step + radius:.4f} Y0 I{radius + 0.5 * step:.4f} J0")
+    return "\n".join(found)
+
+
+def lifted_trochoid(turns: int, radius: float, step: float, feed: float) -> str:
+    """Return a program of half circles that cut, each with a way back on a helix that lifts the tool, and a plunge."""
+    found = [f"F{feed:g}", f"G1 X{radius:g}"]
+    for turn in range(turns):
+        x = step * turn
+        found.append(f"G2 X{x - radius:.4f} Y0 I{-radius:g} J0")
+        found.append(f"G2 X{x + radius + step:.4f} Y0 I{radius + 0.5 * step:g} J0 Z0.5")
+        found.append("G1 Z0")
+    return "\n".join(found)
+
+
+def adaptive(turns: int, radius: float, step: float, feed: float) -> str:
+    """Return a program of half circles that cut, each with a way back that quarter helices lift and lower."""
+    found = [f"F{feed:g}", f"G1 X{radius:g}"]
+    for turn in range(turns):
+        x = step * turn
+        found.append(f"G2 X{x - radius:.4f} Y0 I{-radius:g} J0")
+        found.append(f"G2 X{x - radius + 1.0:.4f} Y1 I1 J0 Z0.3")
+        found.append(f"G1 X{x + radius + step - 1.0:.4f} Y1 F6000")
+        found.append(f"G2 X{x + radius + step:.4f} Y0 I0 J-1 Z0 F{feed:g}")
+    return "\n".join(found)
+
+
+def threads(count: int, radius: float, pitch: float, feed: float) -> str:
+    """Return a program that mills threads from below, with half circles that lead in and out."""
+    found = []
+    for hole in range(count):
+        x, z = 20 * hole, -9.0 + 0.25 * pitch
+        found += ["G0 Z2", f"G0 X{x} Y0", "G1 Z-9 F900", f"F{feed:g}"]
+        found.append(f"G3 X{x + radius:g} Y0 I{0.5 * radius:g} J0 Z{z:.4f}")
+        for _ in range(3):
+            z += pitch
+            found.append(f"G3 X{x + radius:g} Y0 I{-radius:g} J0 Z{z:.4f}")
+        found += [f"G3 X{x} Y0 I{-0.5 * radius:g} J0 Z{z + 0.25 * pitch:.4f}", "G0 Z2"]
+    return "\n".join(found)
+
+
+def helical_pocket(turns: int, radius: float, pitch: float, feed: float) -> str:
+    """Return a program that goes down on full circles and clears the bottom."""
+    down = [f"G3 X{radius:g} Y0 I{-radius:g} J0 Z{-pitch * turn:.3f}" for turn in range(1, turns + 1)]
+    first = [f"F{feed:g}", f"G1 X{radius:g}"]
+    return "\n".join([*first, *down, f"G3 X{radius:g} Y0 I{-radius:g} J0", "G1 X0", "G0 Z5"])
+
+
+def cone(turns: int, growth: float, pitch: float, feed: float) -> str:
+    """Return a program of half turns of helices that touch, each larger than the one before it."""
+    found, x = [f"F{feed:g}"], 0.0
+    for turn in range(turns):
+        radius = (0.5 + growth * turn) * (1 if turn % 2 == 0 else -1)
+        x += 2.0 * radius
+        found.append(f"G3 X{x:.4f} Y0 I{radius:.4f} J0 Z{-pitch * (turn + 1):.3f}")
+    return "\n".join(found)
+
+
+def waves(count: int, width: float, feed: float) -> str:
+    """Return a program of helices that meet in corners and rise and fall in turn."""
+    found, z = [f"F{feed:g}"], 0.0
+    for number, rise in zip(range(count), cycle((1.0, -2.0, 0.5, 0.7, -0.4, 1.5)), strict=False):
+        z += rise
+        x = width * (number + 1)
+        found.append(f"G{2 if number % 2 else 3} X{x:.4f} Y0 R{width / 1.8:.4f} Z{z:.3f}")
     return "\n".join(found)
 
 

@@ -9,11 +9,20 @@ import numpy.typing as npt
 import pytest
 
 import polycnc
-from polycnc.kernel import BY_SHARE, KernelState, append_arc, append_line, start_path
+from polycnc.kernel import (
+    BY_SHARE,
+    KernelState,
+    advance,
+    append_arc,
+    append_line,
+    give_to_path,
+    start_path,
+)
+from polycnc.kernel._cubic import ENTRY
 from polycnc.kernel._geometry import segment_point, segment_tangent
 from polycnc.kernel._segments import ARC, LINE, OVERLAP
-from polycnc.machine import LinearAxis, MachineConfig, PathConfig
-from support.random_paths import PathSettings, machine, overload, prepare, run_recorded
+from polycnc.machine import LinearAxis, Machine, MachineConfig, PathConfig
+from support.random_paths import PathSettings, machine, overload, prepare, replan, run_recorded
 
 Floats = npt.NDArray[np.float64]
 
@@ -106,6 +115,54 @@ def arches() -> str:
     return "\n".join(found)
 
 
+def adaptive() -> str:
+    """Return half circles that cut, each with a way back that quarter helices lift and lower."""
+    found = ["F4200", "G1 X4"]
+    for turn in range(12):
+        x = 1.0 * turn
+        found += [f"G2 X{x - 4.0:.4f} Y0 I-4 J0", f"G2 X{x - 3.0:.4f} Y1 I1 J0 Z0.3"]
+        found += [f"G1 X{x + 4.0:.4f} Y1 F6000", f"G2 X{x + 5.0:.4f} Y0 I0 J-1 Z0 F4200"]
+    return "\n".join(found)
+
+
+def threads() -> str:
+    """Return threads of 1.5 mm that are milled from below, with half circles that lead in and out."""
+    found = ["F2400"]
+    for x in (0, 20, 40, 60):
+        found += ["G0 Z2", f"G0 X{x} Y0", "G1 Z-9 F900", "F2400", f"G3 X{x + 5} Y0 I2.5 J0 Z-8.6250"]
+        found += [f"G3 X{x + 5} Y0 I-5 J0 Z{-8.625 + 1.5 * turn:.4f}" for turn in (1, 2, 3)]
+        found += [f"G3 X{x} Y0 I-2.5 J0 Z-3.7500", "G0 Z2"]
+    return "\n".join(found)
+
+
+def turns() -> str:
+    """Return helices of three turns each, with corners in and out of their plane."""
+    found, z = ["F3000", "G1 X4"], 0
+    for _ in range(4):
+        found += [f"G3 X4 Y0 I-4 J0 Z{z - 3} P3", f"G1 X4 Y0 Z{z - 2}", "G1 X6", "G1 X4"]
+        z -= 2
+    return "\n".join(found)
+
+
+def cone() -> str:
+    """Return half turns of helices that touch, each larger than the one before it."""
+    found, x, z = ["F3600"], 0.0, 0.0
+    for turn in range(24):
+        radius = (0.5 + 0.4 * turn) * (1 if turn % 2 == 0 else -1)
+        x, z = x + 2.0 * radius, z - 0.3
+        found.append(f"G3 X{x:.4f} Y0 I{radius:.4f} J0 Z{z:.3f}")
+    return "\n".join(found)
+
+
+def waves() -> str:
+    """Return helices that meet in corners and rise and fall in turn."""
+    found, x, z = ["F3000"], 0.0, 0.0
+    for turn in range(12):
+        x, z = x + 9.0, z + (1.0, -2.0, 0.5, 0.7, -0.4, 1.5)[turn % 6]
+        found.append(f"G{2 if turn % 2 else 3} X{x:.4f} Y0 R5.0 Z{z:.3f}")
+    return "\n".join(found)
+
+
 # Servo cycles of 1 ms in which LinuxCNC 2.9 moved, with the same axes.
 THERE = [
     pytest.param(trochoid(lifted=True), "G64 P0.01", 13.419, id="helices back"),
@@ -114,6 +171,16 @@ THERE = [
     pytest.param(trochoid(lifted=False), "G64 P0.01", 11.281, id="lines down"),
     pytest.param(trochoid(lifted=False), "G64 P0.1", 10.728, id="lines down, wide"),
     pytest.param(arches(), "G64 P0.05 Q0.02", 12.000, id="arches"),
+    pytest.param(adaptive(), "G64", 9.593, id="quarter helices, free"),
+    pytest.param(adaptive(), "G61", 10.409, id="quarter helices, exact"),
+    pytest.param(threads(), "G64 P0.01", 16.916, id="threads"),
+    pytest.param(threads(), "G64", 16.625, id="threads, free"),
+    pytest.param(turns(), "G64 P0.1", 8.621, id="turns"),
+    pytest.param(cone(), "G64 P0.01", 8.874, id="cone"),
+    pytest.param(cone(), "G64 P0.1", 8.812, id="cone, wide"),
+    pytest.param(waves(), "G64 P0.01", 5.306, id="helix to helix"),
+    pytest.param(waves(), "G64", 3.364, id="helix to helix, free"),
+    pytest.param(waves(), "G61", 4.347, id="helix to helix, exact"),
 ]
 
 
@@ -121,3 +188,68 @@ THERE = [
 def test_the_time_is_that_of_linuxcnc(program: str, rule: str, seconds: float) -> None:
     text = f"G21 G90 {rule}\nG0 X0 Y0 Z0\n{program}\nM2\n"
     assert polycnc.run(text, ROUTER, dialect="linuxcnc").time_s == pytest.approx(seconds, rel=0.006)
+
+
+@pytest.mark.parametrize(
+    ("rise", "speed", "accel"),
+    # As seen on LinuxCNC 2.9: X and Y have 800 mm/s2, Z 500, and overlapping motions half of that.
+    [(3.0, 46.695, 201.4), (12.0, 58.335, 435.1)],
+)
+def test_a_helix_turns_as_if_its_whole_rise_made_its_radius_larger(
+    rise: float, speed: float, accel: float
+) -> None:
+    state = Machine(ROUTER, segments=64).state
+    give_to_path(state, 0)
+    state.paths.row[0]["tolerance_mm"] = 0.05
+    where, row = state.seg, state.paths
+    append_line(where, row, 0, state.limits, np.array([4.0, 0, 0]), 150.0, 0, 1)
+    end = np.array([4.0, 0.0, rise])
+    append_arc(where, row, 0, state.limits, end, 0, 1, 0.0, 0.0, 2.0 * math.pi, 150.0, 0, 2)
+    append_line(where, row, 0, state.limits, np.array([20.0, 0, rise]), 150.0, 0, 3)
+    prepare(state)
+    assert kinds(state) == [LINE, OVERLAP, ARC, OVERLAP, LINE]
+    assert where.row[2]["cap"] == pytest.approx(speed, rel=1e-3)
+    assert where.row[2]["full_accel"] == pytest.approx(accel, rel=1e-3)
+
+
+@pytest.mark.parametrize("tolerance", [0.05, math.inf])
+def test_the_path_speed_goes_evenly_from_one_end_of_a_piece_to_the_other(tolerance: float) -> None:
+    state = queued(tolerance)
+    prepare(state)
+    rows = state.seg.row
+    for k in (number for number, kind in enumerate(kinds(state)) if kind == OVERLAP):
+        entry = state.seg.geo[k, ENTRY]
+        first, last = rows[k - 1]["junction"], rows[k]["junction"]
+        assert first / (first + last) == pytest.approx(entry, rel=0.02)
+        assert abs(last**2 - first**2) <= 2.0 * rows[k]["full_accel"] * rows[k]["length"] * (1.0 + 1e-3)
+
+
+@pytest.mark.parametrize("override", [0.0, 0.1, 1.7])
+def test_a_hold_or_an_override_in_a_piece_breaks_no_limit(override: float) -> None:
+    for cycle in range(20, 700, 23):
+        state = queued(0.4)
+        prepare(state)
+        start_path(state.paths, 0)
+        advance(state, cycle)
+        state.paths.row[0]["override"] = override
+        replan(state)
+        advance(state, 200)
+        state.paths.row[0]["override"] = 1.0
+        replan(state)
+        run_recorded(state)
+        assert state.paths.position[0] == pytest.approx([15.0, 6.0, -3.0])
+        assert max(overload(state)) <= 1.0 + 1e-6, f"cycle {cycle}"
+
+
+def test_an_axis_besides_the_three_leaves_corners_as_they_are() -> None:
+    state = machine(np.random.default_rng(3), PathSettings(tolerance=0.05, shares=(0.1, 0.5, 0.5)))
+    state.limits.feed_axis[2] = 0  # as a rotary axis, which rides along
+    where, row = state.seg, state.paths
+    append_line(where, row, 0, state.limits, np.array([8.0, 0.0, 30.0]), 60.0, 0, 1)
+    append_arc(where, row, 0, state.limits, np.array([8.0, 8.0, 90.0]), 0, 1, 8.0, 4.0, math.pi, 60.0, 0, 2)
+    append_line(where, row, 0, state.limits, np.array([0.0, 1.0, 90.0]), 60.0, 0, 3)
+    assert kinds(state) == [LINE, ARC, LINE]
+    prepare(state)
+    start_path(state.paths, 0)
+    run_recorded(state)
+    assert max(overload(state)) <= 1.0 + 1e-6

@@ -8,8 +8,9 @@ import numpy as np
 
 from polycnc.kernel._axis_limits import AxisLimits
 from polycnc.kernel._corner_rules import BY_SHARE
+from polycnc.kernel._curve_limits import CENTRIPETAL_SHARE
 from polycnc.kernel._jit import compiled
-from polycnc.kernel._limits import CENTRIPETAL_SHARE, CURVE_SHARE
+from polycnc.kernel._limits import CURVE_SHARE
 from polycnc.kernel._segments import Floats
 from polycnc.kernel._touching import Element
 

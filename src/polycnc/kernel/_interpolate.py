@@ -14,6 +14,7 @@ import math
 import numpy as np
 
 from polycnc.kernel._braking import GONE, SPEED_NOW
+from polycnc.kernel._curve_limits import goes_through
 from polycnc.kernel._follow import follow_cycle_along, follows, start_following
 from polycnc.kernel._geometry import segment_point
 from polycnc.kernel._in_step import note_begun
@@ -136,7 +137,10 @@ def _plan_from(
         out = row["out"] if path["depth"] == 0 else window_speed(seg, paths, g, count)
         out = min(out, most)
         length = row["length"] - s
-        if is_held(path, row) or row["cap"] <= 0.0:
+        if goes_through(row, seg.geo[k], speed):
+            out = max(out, speed)
+            _plan_pieces(path, row, ramps, speed, s, length, max(row["cap"], speed), out, out, dt)
+        elif is_held(path, row) or row["cap"] <= 0.0:
             needed = halting_distance(speed, row["accel"], path["entry_zone"] - s, path["entry_share"])
             through = min(speed, max(out, row["bound"])) if needed > length else 0.0
             _plan_pieces(path, row, ramps, speed, s, min(needed, length), speed, through, 0.0, dt)

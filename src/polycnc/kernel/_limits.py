@@ -18,47 +18,47 @@ import math
 import numpy as np
 
 from polycnc.kernel._axis_limits import AxisLimits
-from polycnc.kernel._bezier import BEND_BOUND, TANGENT_BOUND
-from polycnc.kernel._circle3d import circle3d_tangent_bound
 from polycnc.kernel._corner_rules import AS_AXES_ALLOW, BY_SHARE, corner_speed, step_share, turns
-from polycnc.kernel._cubic import cubic_bounds
+from polycnc.kernel._curve_limits import (
+    CENTRIPETAL_SHARE,
+    OVERLAP_SHARE,
+    adds_up,
+    curve_bounds,
+    gets_faster,
+    keep_turning,
+    limit_arc_by_share,
+    limit_overlap,
+    speed_at_end,
+)
 from polycnc.kernel._geometry import is_curved, segment_tangent
 from polycnc.kernel._jit import compiled
 from polycnc.kernel._path import HELD, RUNNING
 from polycnc.kernel._ramps import MOST_SHARE, beside_corner
 from polycnc.kernel._segments import (
     ARC,
-    CIRCLE3D,
-    CIRCLE3D_RADIUS,
     CORNER_STOP,
     LAST,
     LINE,
     OVERLAP,
     OVERLAPS,
-    RADIUS_END,
-    RADIUS_START,
     RAPID,
     ROUNDING,
-    SPLINE,
     STOP,
-    SWEEP_RAD,
     WAIT,
     WITH_SPINDLE,
-    WORK_POINT,
     Floats,
     Segments,
 )
 
 CURVE_CORNER_SHARE = 0.05  # the same beside a curve, which needs the rest for itself
 CURVE_SHARE = 1.0 - CURVE_CORNER_SHARE
-CENTRIPETAL_SHARE = math.sqrt(0.75)  # highest part that the curvature of an arc may use
 SPLINE_CENTRIPETAL_SHARE = 0.45
-OVERLAP_BEND_SHARE = 0.9  # of an axis' acceleration may be what an OVERLAP changes its speed by
-OVERLAP_SHARE = 0.5  # of its acceleration has a segment that overlaps with another
 CORNER_MARGIN = 1.125  # the most that corners closer than a cycle can add up to unevenly
 LARGEST_BEND = 0.005  # rad; more is a corner, where an exact path comes to rest
 STRAIGHT = 1e-13  # a smaller change of direction is rounding
 LEAST_PART = 0.249  # of `full_accel` is left whatever the corners and the override turn out to be
+LEAST_OF_ARC = 0.5  # of that is left to an arc with BY_SHARE that is turned through faster
+LEAST_OF_OVERLAP = 1e-6  # nothing is counted on where one motion ends and another begins
 LEAST_ON_CURVE = 0.5  # of its ramps is left to a curve beside a corner with BY_SHARE
 STEP_OF_ROUNDING = 1e-5  # smaller shares of a cycle come from arcs that touch a line by rounding only
 MOST_BETWEEN = 16  # joints that are looked at between two corners with BY_SHARE
@@ -151,20 +151,20 @@ def _limit_curve(
     bend: Floats,
 ) -> tuple[float, float]:
     """Return speed cap and tangential acceleration on a curve from per-axis bounds of tangent and curvature."""
-    _curve_bounds(seg, k, tangent, bend)
+    if seg.row[k]["kind"] == OVERLAP:
+        return limit_overlap(seg, k, limits, path, asked_mm_s, tangent, bend)
+    curve_bounds(seg, k, tangent, bend)
+    if path["corner_rule"] == BY_SHARE and seg.row[k]["kind"] == ARC and not seg.row[k]["flags"] & ROUNDING:
+        return limit_arc_by_share(seg, k, limits, path, asked_mm_s, tangent, bend)
     is_sum = adds_up(seg.row[k])
-    bend_share = CENTRIPETAL_SHARE
-    if is_sum:
-        bend_share = OVERLAP_BEND_SHARE if seg.row[k]["kind"] == OVERLAP else SPLINE_CENTRIPETAL_SHARE
+    bend_share = SPLINE_CENTRIPETAL_SHARE if is_sum else CENTRIPETAL_SHARE
     whole = path["accel_limit_mm_s2"]
-    # What overlaps with a neighbour has its part of the axes for ramps and turning.
-    own = OVERLAP_SHARE if seg.row[k]["flags"] & OVERLAPS and not is_sum else 1.0
     most = math.inf
     for i in range(tangent.shape[0]):
         if tangent[i] > 0.0:
             most = min(most, limits.speed[i] / tangent[i])
         if bend[i] > 0.0:
-            most = min(most, math.sqrt(bend_share * own * min(limits.acceleration[i], whole) / bend[i]))
+            most = min(most, math.sqrt(bend_share * min(limits.acceleration[i], whole) / bend[i]))
     cap = min(asked_mm_s, path["speed_limit_mm_s"], most)
     # With BY_SHARE the lines beside a corner do without what it takes, and an arc has nothing put aside for it.
     # What an arc needs to turn counts as if it were traversed with all that its axes allow, whatever the feed.
@@ -172,53 +172,14 @@ def _limit_curve(
     share = 1.0 if by_share else CURVE_SHARE
     turning = most if by_share else cap
     rounds = path["rounding_share"] > 0.0 and seg.row[k]["flags"] & ROUNDING != 0
-    accel = share * own * whole
+    accel = share * whole
     for i in range(tangent.shape[0]):
         if tangent[i] > 0.0:
-            allowed = own * min(limits.acceleration[i], whole)
+            allowed = min(limits.acceleration[i], whole)
             used = turning * turning * bend[i] / allowed if bend[i] > 0.0 else 0.0
             left = share - used if is_sum else math.sqrt(share * share - used * used)
             accel = min(accel, (path["rounding_share"] if rounds else left) * allowed / tangent[i])
     return cap, accel
-
-
-@compiled
-def adds_up(row: np.void) -> bool:
-    """Tell whether turning and ramps of a segment may need an axis at once, not a quarter turn apart as on circles."""
-    return bool(row["kind"] == SPLINE or row["kind"] == OVERLAP)
-
-
-@compiled
-def _curve_bounds(seg: Segments, k: int, tangent: Floats, bend: Floats) -> None:
-    """Write the greatest |dp/ds| and |d2p/ds2| of every axis over curve `k`."""
-    row, geo = seg.row[k], seg.geo[k]
-    kind = row["kind"]
-    for i in range(tangent.shape[0]):
-        tangent[i] = abs(seg.end[k, i] - seg.start[k, i]) / row["length"]
-        bend[i] = 0.0
-    if kind == ARC:
-        small = min(geo[RADIUS_START], geo[RADIUS_END])
-        large = max(geo[RADIUS_START], geo[RADIUS_END])
-        turn = abs(geo[SWEEP_RAD]) / row["length"]
-        # A changing radius adds a part along the radius, and as much again across it by turning.
-        spiral = 1.0 + 2.0 * (large - small) / (abs(geo[SWEEP_RAD]) * small)
-        for j in range(2):
-            tangent[seg.plane[k, j]] = spiral * turn * large
-            bend[seg.plane[k, j]] = spiral * turn * turn * large
-    elif kind == SPLINE:
-        for j in range(2):
-            tangent[seg.plane[k, j]] = geo[TANGENT_BOUND + j]
-            bend[seg.plane[k, j]] = geo[BEND_BOUND + j]
-    elif kind == CIRCLE3D:
-        three = seg.geo[k, WORK_POINT:]
-        circle3d_tangent_bound(geo, three)
-        for j in range(3):
-            tangent[seg.plane[k, j]] = three[j]
-            bend[seg.plane[k, j]] = three[j] / geo[CIRCLE3D_RADIUS]
-    elif kind == OVERLAP:
-        for j in range(3):
-            i = seg.plane[k, j]
-            tangent[i], bend[i] = cubic_bounds(geo, j, seg.end[k, i] - seg.start[k, i], row["length"])
 
 
 @compiled
@@ -279,6 +240,7 @@ def limit_junction(
     segment_tangent(seg, following, 0.0, work[1])
     speed = min(row["cap"], after["cap"])
     if path["corner_rule"] == BY_SHARE:
+        speed = min(speed_at_end(seg, k, 1.0), speed_at_end(seg, following, 0.0))
         row["junction"] = _junction_by_share(seg, k, following, limits, path, work, speed)
         return
     if row["flags"] & CORNER_STOP and turns(work, LARGEST_BEND):
@@ -345,11 +307,13 @@ def _junction_by_share(
     if curved:
         # A corner that the path slows down for anyway is passed slower instead of taking more of the ramps.
         kept = most if needed > most else 1.0 - LEAST_ON_CURVE
+        near = speed * min(1.0, most / needed)
         largest = 1.0
         if is_curved(seg, k):
-            largest = float(_held(seg, k, limits, work, kept))
+            largest = float(_held(seg, k, limits, work, kept, _speed_near(row, path, near)))
         if is_curved(seg, following):
-            largest = min(largest, float(_held(seg, following, limits, work, kept)))
+            near_after = _speed_near(after, path, near)
+            largest = min(largest, float(_held(seg, following, limits, work, kept, near_after)))
         if step > largest:
             step = largest
             most = step / part
@@ -357,23 +321,36 @@ def _junction_by_share(
         speed = 0.0 if rests else speed * most / needed
     row["kept_out"] = min(needed, most)
     after["kept_in"] = row["kept_out"]
+    if row["kept_out"] > STEP_OF_ROUNDING:
+        keep_turning(seg, k, limits, path, work[:2], row["kept_out"])
+        keep_turning(seg, following, limits, path, work[:2], row["kept_out"])
+        speed = min(speed, row["cap"], after["cap"])
     if curved:
-        row["kept_out"] = max(row["kept_out"], _kept_on_curve(seg, k, limits, work, step))
-        after["kept_in"] = max(after["kept_in"], _kept_on_curve(seg, following, limits, work, step))
+        near = _speed_near(row, path, speed)
+        row["kept_out"] = max(row["kept_out"], _kept_on_curve(seg, k, limits, work, step, near))
+        near = _speed_near(after, path, speed)
+        after["kept_in"] = max(after["kept_in"], _kept_on_curve(seg, following, limits, work, step, near))
     if speed > 0.0:
         if step > STEP_OF_ROUNDING:
             speed = float(_apart(seg, k, limits, path, work, speed, step))
         inherited = float(row["kept_in"])
         if inherited > STEP_OF_ROUNDING and not _lasts_beside(row, path["corner_cycle_s"], speed):
-            inherited = min(inherited, _held(seg, k, limits, work, inherited))
+            inherited = min(inherited, _held(seg, k, limits, work, inherited, row["cap"]))
             after["kept_in"] = max(after["kept_in"], inherited)
             if is_curved(seg, following):
                 after["kept_in"] = max(
-                    after["kept_in"], _kept_on_curve(seg, following, limits, work, inherited)
+                    after["kept_in"], _kept_on_curve(seg, following, limits, work, inherited, after["cap"])
                 )
     if after["flags"] & LAST and path["last_share"] > 0.0:
-        speed = min(speed, math.sqrt(path["last_share"] * after["full_accel"] * after["length"]))
+        speed = min(speed, math.sqrt(_last_part(after, path) * after["full_accel"] * after["length"]))
     return float(speed)
+
+
+@compiled
+def _last_part(row: np.void, path: np.void) -> float:
+    """Return which part of the acceleration of a LAST segment is left; one that overlaps may have given its part."""
+    part = path["last_share"] / (OVERLAP_SHARE if row["flags"] & OVERLAPS else 1.0)
+    return float(min(part, 1.0))
 
 
 @compiled
@@ -411,7 +388,9 @@ def _apart(
         if last["junction"] <= 0.0:
             return speed
         kept = max(last["kept_in"], last["kept_out"])
-        if last["kept_out"] > STEP_OF_ROUNDING or _held(seg, k, limits, work, kept) < step * (1.0 - 1e-9):
+        if last["kept_out"] > STEP_OF_ROUNDING or _held(seg, k, limits, work, kept, last["cap"]) < step * (
+            1.0 - 1e-9
+        ):
             before = float(last["junction"])
             break
     gain = accel * cycle
@@ -427,16 +406,25 @@ def _apart(
 
 
 @compiled
-def _held(seg: Segments, k: int, limits: AxisLimits, work: Floats, kept: float) -> float:
-    """Return which part of every axis' acceleration segment `k` leaves alone when its ramps give up `kept`."""
+def _speed_near(row: np.void, path: np.void, speed: float) -> float:
+    """Return the highest speed within two cycles of a corner that is passed with `speed`."""
+    return float(min(row["cap"], speed + 2.0 * path["corner_cycle_s"] * row["full_accel"]))
+
+
+@compiled
+def _held(seg: Segments, k: int, limits: AxisLimits, work: Floats, kept: float, speed: float) -> float:
+    """Return which part of every axis' acceleration segment `k` leaves alone up to a speed.
+
+    Its ramps give up `kept`.
+    """
     if not is_curved(seg, k):
         return kept
     row = seg.row[k]
-    _curve_bounds(seg, k, work[0], work[1])
+    curve_bounds(seg, k, work[0], work[1])
     held = 1.0
     for i in range(work.shape[1]):
         if work[0, i] > 0.0:
-            turning = row["cap"] * row["cap"] * work[1, i] / limits.acceleration[i]
+            turning = speed * speed * work[1, i] / limits.acceleration[i]
             ramp = (1.0 - kept) * row["full_accel"] * work[0, i] / limits.acceleration[i]
             used = turning + ramp if adds_up(row) else math.sqrt(turning * turning + ramp * ramp)
             held = min(held, 1.0 - used)
@@ -444,19 +432,21 @@ def _held(seg: Segments, k: int, limits: AxisLimits, work: Floats, kept: float) 
 
 
 @compiled
-def _kept_on_curve(seg: Segments, k: int, limits: AxisLimits, work: Floats, step: float) -> float:
-    """Return the part of its ramps that a curve gives up so that all it uses leaves a corner the share `step`.
+def _kept_on_curve(
+    seg: Segments, k: int, limits: AxisLimits, work: Floats, step: float, speed: float
+) -> float:
+    """Return the part of its ramps that a curve gives up so that all it uses up to a speed leaves a corner the share.
 
     Turning takes what it takes, so the ramps give up more than the corner needs.
     """
     if not is_curved(seg, k):
         return 0.0
     row = seg.row[k]
-    _curve_bounds(seg, k, work[0], work[1])
+    curve_bounds(seg, k, work[0], work[1])
     kept = 0.0
     for i in range(work.shape[1]):
         if work[0, i] > 0.0 and row["full_accel"] > 0.0:
-            turning = row["cap"] * row["cap"] * work[1, i] / limits.acceleration[i]
+            turning = speed * speed * work[1, i] / limits.acceleration[i]
             ramp = row["full_accel"] * work[0, i] / limits.acceleration[i]
             left = max(0.0, 1.0 - step - turning)
             if not adds_up(row):
@@ -633,10 +623,10 @@ def share_acceleration(
     if path["corner_rule"] == BY_SHARE:
         accel *= 1.0 - max(row["kept_in"], row["kept_out"])
         if row["flags"] & LAST and path["last_share"] > 0.0:
-            accel *= path["last_share"]
+            accel *= _last_part(row, path)
     length = row["length"]
     row["accel"] = accel
-    row["gain"] = 2.0 * accel * length
+    row["gain"] = 0.0 if gets_faster(row, seg.geo[k]) else 2.0 * accel * length
     first, last = yield_before * before, row["yield_before"] * row["junction"]
     if first > 0.0 or last > 0.0:
         from_start = beside_corner(before, accel, first, dt, length) if first > 0.0 else 0.0
@@ -647,6 +637,9 @@ def share_acceleration(
 
 
 @compiled
-def least_accel(row: np.void, jerkrel: float) -> float:
-    """Return an acceleration that the segment will allow whatever comes after it."""
-    return float(row["full_accel"] * LEAST_PART / (1.0 + jerkrel))
+def least_accel(row: np.void, path: np.void) -> float:
+    """Return an acceleration that the segment will allow whatever comes after it, another override included."""
+    part = LEAST_PART * (LEAST_OF_ARC if row["kind"] == ARC and path["corner_rule"] == BY_SHARE else 1.0)
+    if row["kind"] == OVERLAP:
+        part = LEAST_OF_OVERLAP
+    return float(row["full_accel"] * part / (1.0 + path["jerkrel"]))

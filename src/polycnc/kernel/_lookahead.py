@@ -72,11 +72,11 @@ def _last_limit(row: np.void, closed: bool) -> float:
 
 
 @compiled
-def _last_gain(row: np.void, closed: bool, jerkrel: float) -> float:
+def _last_gain(row: np.void, closed: bool, path: np.void) -> float:
     """Return how much the last segment known can take off the squared speed, whatever corner will follow it."""
     if closed or row["flags"] & STOP:
         return float(row["gain"])
-    return float(2.0 * least_accel(row, jerkrel) * row["length"])
+    return float(2.0 * least_accel(row, path) * row["length"])
 
 
 @compiled
@@ -90,7 +90,6 @@ def plan_path(seg: Segments, paths: Paths, g: int) -> None:
     tail = int(path["prepared"])
     known = max(int(path["planned"]), int(path["head"]))
     closed = path["closed"] != 0 and tail == path["tail"]
-    jerkrel = path["jerkrel"]
     rest = 0.0  # squared entry speed of the following segment if the path ends at the tail
     more = math.inf
     met = False
@@ -102,7 +101,7 @@ def plan_path(seg: Segments, paths: Paths, g: int) -> None:
             met = bool(closed or row["flags"] & STOP)
             if met:
                 path["planned"] = tail
-            rest = out + _last_gain(row, closed, jerkrel)
+            rest = out + _last_gain(row, closed, path)
         else:
             limit = end_limit(row)
             limit *= limit
@@ -138,7 +137,7 @@ def window_speed(seg: Segments, paths: Paths, g: int, count: int) -> float:
             return planned
     row = seg.row[slot(paths, g, last)]
     limit = _last_limit(row, False)
-    rest = limit * limit + _last_gain(row, False, path["jerkrel"])
+    rest = limit * limit + _last_gain(row, False, path)
     for other in range(last - 1, count, -1):
         row = seg.row[slot(paths, g, other)]
         limit = end_limit(row)

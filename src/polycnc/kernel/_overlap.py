@@ -12,14 +12,24 @@ from __future__ import annotations
 
 import math
 
+import numpy as np
+
 from polycnc.kernel._axis_limits import AxisLimits
 from polycnc.kernel._blend_arcs import may_be_rounded
 from polycnc.kernel._blend_speed import CUT, CUT_LINE
 from polycnc.kernel._corner_rules import BY_SHARE, step_share
-from polycnc.kernel._cubic import FIRST, SECOND
+from polycnc.kernel._cubic import ENTRY, FIRST, SECOND
+from polycnc.kernel._curve_limits import (
+    CENTRIPETAL_SHARE,
+    LAST_ARC_SHARE,
+    OVERLAP_BEND_SHARE,
+    OVERLAP_SHARE,
+    axes_allow,
+    axis_use,
+)
 from polycnc.kernel._geometry import segment_point, segment_tangent
 from polycnc.kernel._jit import compiled
-from polycnc.kernel._limits import CENTRIPETAL_SHARE, OVERLAP_SHARE, segment_limits
+from polycnc.kernel._limits import feed_in_force, segment_limits
 from polycnc.kernel._path import SCRATCH_POINTS, Paths, slot
 from polycnc.kernel._segments import (
     ARC,
@@ -31,6 +41,7 @@ from polycnc.kernel._segments import (
     RADIUS_END,
     RADIUS_START,
     RAPID,
+    RISE,
     SWEEP_RAD,
     Floats,
     Segments,
@@ -39,6 +50,7 @@ from polycnc.kernel._segments import (
 
 SHARPEST = math.radians(178.0)  # a sharper corner is a stop
 SHORTEST_MM = 1e-6
+MOST_TRIES = 16
 LEAST_ASIDE = 1e-3  # sine of half the turn; smaller ones leave the speed free
 
 
@@ -66,12 +78,12 @@ def overlap_corner(seg: Segments, paths: Paths, g: int, limits: AxisLimits) -> N
         taken = paths.blend[g, CUT]
     row["flags"] |= OVERLAPS
     after["flags"] |= OVERLAPS
-    cut, speed = _size(seg, paths, g, k, following, limits, taken)
-    if cut < SHORTEST_MM:
+    time, leaving, entering = _size(seg, paths, g, k, following, limits, taken)
+    if time * min(leaving, entering) < 2.0 * SHORTEST_MM:
         row["flags"] = flags
         after["flags"] &= ~OVERLAPS
         return
-    _insert(seg, paths, g, (p, q, r), cut, speed)
+    _insert(seg, paths, g, (p, q, r), time, (leaving, entering))
 
 
 @compiled
@@ -105,53 +117,201 @@ def _three_axes(seg: Segments, k: int, following: int, limits: AxisLimits) -> tu
 @compiled
 def _size(
     seg: Segments, paths: Paths, g: int, k: int, following: int, limits: AxisLimits, taken: float
-) -> tuple[float, float]:
-    """Return how much of both segments the overlap takes, and the speed at its ends; 0 where there is none.
+) -> tuple[float, float, float]:
+    """Return how long two motions overlap, and the speeds with which one begins to end and the other has begun.
 
-    The motion that ends has its speed with the deviation that is allowed left to go. What takes the place of both has
-    one speed at both its ends, and takes the time that both would.
+    All 0 where they do not. The one that ends has its speed with the deviation that is allowed left to go, and the
+    other reaches its own by the end, with its acceleration at most.
     """
     path, work = paths.row[g], paths.blend[g]
     n = seg.start.shape[1]
     tangents = work[SCRATCH_POINTS : SCRATCH_POINTS + 2 * n].reshape(2, n)
     row, after = seg.row[k], seg.row[following]
+    if _is_passed(seg, k, following, limits, path, tangents):
+        return 0.0, 0.0, 0.0
     cap, accel = segment_limits(seg, k, limits, path, tangents[0], tangents[1])
     cap_after, accel_after = segment_limits(seg, following, limits, path, tangents[0], tangents[1])
-    _pull(seg, k, limits, 1.0, tangents[0])
-    _pull(seg, following, limits, 0.0, tangents[1])
-    pull = _dot(tangents, limits)
+    length, length_after = row["length"] + taken, after["length"]
+    aside = _pulled_aside(seg, k, following, limits, tangents)
+    leaving, _ = _blend_speeds(
+        (cap, accel, length), (cap_after, accel_after, length_after), aside, path["tolerance_mm"], 1.0
+    )
     segment_tangent(seg, k, 1.0, tangents[0])
     segment_tangent(seg, following, 0.0, tangents[1])
-    dot = _dot(tangents, limits)
-    if dot < math.cos(SHARPEST):
-        return 0.0, 0.0
-    beside = math.sqrt(max(0.0, 0.5 * (1.0 - dot)))  # sine of half the turn
-    length = row["length"] + taken
-    fast = min(cap, math.sqrt(accel * length))
-    fast_after = min(cap_after, math.sqrt(accel_after * after["length"]))
-    time = min(length / fast, after["length"] / fast_after, max(fast / accel, fast_after / accel_after))
-    leaving, entering = min(fast, time * accel), min(fast_after, time * accel_after)
-    most = min(0.5 * length, 0.5 * after["length"], row["length"] - SHORTEST_MM)
-    tolerance = path["tolerance_mm"]
-    if beside > 0.0 and tolerance < math.inf:
-        straight = 2.0 * tolerance / beside
-        bend = min(most, straight) * max(_curvature(seg, k), _curvature(seg, following))
-        most = min(most, straight / (1.0 + bend * bend / 6.0))
-    aside = math.sqrt(max(0.0, 0.5 * (1.0 - pull)))
-    if aside > LEAST_ASIDE and tolerance < math.inf:
-        slow = 2.0 * math.sqrt(accel * tolerance / aside)
+    time = leaving / accel
+    if accel_after * time > cap_after and _axes_can(
+        tangents, limits, leaving * accel_after / cap_after, accel_after
+    ):
+        time = (
+            cap_after / accel_after
+        )  # the next has its speed before the other is over, which ends sooner instead
+    rate, rate_after = _rates(tangents, limits, leaving / time, min(accel_after, cap_after / time))
+    if max(rate * time / cap, rate_after * time / cap_after) > 1.0:
+        rate = rate_after = 2.0 / (1.0 / rate + 1.0 / rate_after)
+        time = min(time, cap / rate, cap_after / rate)
+    off = _nearer(seg, k, following, limits, tangents, path["tolerance_mm"], (rate, rate_after, time))
+    if off < 1.0:
+        time, rate, rate_after = _as_quick(tangents, limits, rate, rate_after, time, off)
+    room = min(0.5 * length, row["length"] - SHORTEST_MM) / (0.5 * rate)
+    room = min(room, length_after / rate_after)
+    time = min(time, math.sqrt(max(0.0, room)))
+    return time, rate * time, rate_after * time
+
+
+@compiled
+def _nearer(
+    seg: Segments,
+    k: int,
+    following: int,
+    limits: AxisLimits,
+    tangents: Floats,
+    tolerance_mm: float,
+    course: tuple[float, float, float],
+) -> float:
+    """Return by how much a corner has to be passed nearer to keep its tolerance, 1 at most; `course`: rates, time."""
+    beside = math.sqrt(max(0.0, 0.5 * (1.0 - _dot(tangents, limits))))  # sine of half the turn
+    if beside <= 0.0 or tolerance_mm == math.inf:
+        return 1.0
+    rate, rate_after, time = course
+    cut, cut_after = 0.5 * rate * time * time, 0.5 * rate_after * time * time
+    # Where both have gone as far from the corner, and what they bend.
+    both = cut * cut_after / (math.sqrt(cut) + math.sqrt(cut_after)) ** 2
+    off = min(1.0, tolerance_mm / (2.0 * both * beside))
+    bend = off * max(cut * _curvature(seg, k), cut_after * _curvature(seg, following))
+    return float(off / (1.0 + bend * bend / 6.0))
+
+
+@compiled
+def _as_quick(
+    tangents: Floats, limits: AxisLimits, rate: float, rate_after: float, time: float, off: float
+) -> tuple[float, float, float]:
+    """Return in which time and with which rates a corner is passed nearer by `off`.
+
+    With so much more of both rates, or of one, that nothing is lost of the time that the corner saves, if every axis
+    can, else with as much as they can.
+    """
+    nearer = 0.5 * (math.sqrt(1.0 + 8.0 * off) - 1.0)
+    more = off / (nearer * nearer)
+    if not _axes_can(tangents, limits, more * rate, more * rate_after):
+        alone = _more_alone(rate, rate_after, off)
+        if _axes_can(tangents, limits, alone * rate, rate_after):
+            return time / alone, alone * rate, rate_after
+        alone = _more_alone(rate_after, rate, off)
+        if _axes_can(tangents, limits, rate, alone * rate_after):
+            return time / alone, rate, alone * rate_after
+        for _ in range(MOST_TRIES):
+            more = max(1.0, more - 0.1)
+            if _axes_can(tangents, limits, more * rate, more * rate_after):
+                break
+        else:
+            more = 1.0
+    return time * math.sqrt(off / more), more * rate, more * rate_after
+
+
+@compiled
+def _more_alone(rate: float, other: float, off: float) -> float:
+    """Return by how much a rate grows, and the time shrinks, where the corner is passed nearer by `off`."""
+    root, root_other = math.sqrt(rate), math.sqrt(other)
+    way = (root + root_other) / math.sqrt(off)
+    grown = 2.0 * way / (root_other + math.sqrt(other + 4.0 * root * way))
+    return grown * grown
+
+
+@compiled
+def _blend_speeds(
+    before: tuple[float, float, float],
+    after: tuple[float, float, float],
+    aside: float,
+    tolerance_mm: float,
+    known: float,
+) -> tuple[float, float]:
+    """Return the speeds with which one motion begins to end and the next has begun.
+
+    `before` and `after` are speed, acceleration and length each, of which the part `known` is theirs for sure.
+    """
+    fast = min(before[0], math.sqrt(before[1] * before[2] * known))
+    fast_after = min(after[0], math.sqrt(after[1] * after[2] * known))
+    time = min(before[2] / fast, after[2] / fast_after, max(fast / before[1], fast_after / after[1]))
+    leaving, entering = min(fast, time * before[1]), min(fast_after, time * after[1])
+    if aside > LEAST_ASIDE and tolerance_mm < math.inf:
+        slow = 2.0 * math.sqrt(before[1] * tolerance_mm / aside)
         leaving, entering = min(leaving, slow), min(entering, slow)
-    share = step_share(
-        limits, tangents, min(cap, cap_after), accel_after / OVERLAP_SHARE, path["corner_cycle_s"]
-    )
+    return leaving, entering
+
+
+@compiled
+def _is_passed(
+    seg: Segments, k: int, following: int, limits: AxisLimits, path: np.void, tangents: Floats
+) -> bool:
+    """Tell whether the corner is passed as it is: with all its speed, or faster than motions that overlap would be.
+
+    As LinuxCNC weighs it: before it knows the next corner, and half of the speed because both motions lose theirs.
+    """
+    row, after = seg.row[k], seg.row[following]
+    top, accel = axes_allow(seg, k, limits, path, tangents[0], tangents[1])
+    top_after, accel_after = axes_allow(seg, following, limits, path, tangents[0], tangents[1])
+    cap, cap_after = min(top, feed_in_force(row, path)), min(top_after, feed_in_force(after, path))
+    aside = _pulled_aside(seg, k, following, limits, tangents)
+    segment_tangent(seg, k, 1.0, tangents[0])
+    segment_tangent(seg, following, 0.0, tangents[1])
+    if _dot(tangents, limits) < math.cos(SHARPEST):
+        return True
+    share = step_share(limits, tangents, min(cap, cap_after), accel_after, path["corner_cycle_s"])
     if path["rounding_share"] > 0.0:
         share /= path["rounding_share"]
-    net = 0.5 * math.sqrt(max(0.0, 0.5 * (1.0 + pull))) * (leaving + entering)
-    if share <= path["corner_share"] or min(cap, cap_after) * path["corner_share"] / share >= net:
-        return 0.0, 0.0
-    mean = 2.0 / (1.0 / accel + 1.0 / accel_after)
-    speed = min(leaving * mean / accel, cap, cap_after, math.sqrt(2.0 * mean * max(most, 0.0)))
-    return 0.5 * speed * speed / mean, speed
+    if share <= path["corner_share"]:
+        return True
+    part, part_after = _part_for_sure(row, path), _part_for_sure(after, path)
+    leaving, entering = _blend_speeds(
+        (cap, part * accel, row["length"]),
+        (cap_after, part_after * accel_after, after["length"]),
+        aside,
+        path["tolerance_mm"],
+        0.5,
+    )
+    net = 0.25 * math.sqrt(max(0.0, 1.0 - aside * aside)) * (leaving + entering)
+    return bool(min(cap, cap_after) * path["corner_share"] / share >= net)
+
+
+@compiled
+def _part_for_sure(row: np.void, path: np.void) -> float:
+    """Return which part of its acceleration a motion is sure of that overlaps and whose corner is not known."""
+    part = OVERLAP_SHARE * (1.0 - path["corner_share"])
+    return float(part * (LAST_ARC_SHARE if row["kind"] == ARC else 1.0))
+
+
+@compiled
+def _pulled_aside(seg: Segments, k: int, following: int, limits: AxisLimits, pulls: Floats) -> float:
+    """Return the sine of half the angle between where both motions accelerate to; `pulls` is scratch."""
+    _pull(seg, k, limits, 1.0, pulls[0])
+    _pull(seg, following, limits, 0.0, pulls[1])
+    return math.sqrt(max(0.0, 0.5 * (1.0 - _dot(pulls, limits))))
+
+
+@compiled
+def _rates(tangents: Floats, limits: AxisLimits, accel: float, accel_after: float) -> tuple[float, float]:
+    """Return how fast one speed falls and the other rises, nearer to each other where an axis cannot have both."""
+    rate, rate_after = accel, accel_after
+    apart = 1.0
+    while apart > 0.0 and not _axes_can(tangents, limits, rate, rate_after):
+        apart = apart - 0.25
+        even = 0.5 * (1.0 / accel + 1.0 / accel_after)
+        rate = 1.0 / (even + apart * (1.0 / accel - even))
+        rate_after = 1.0 / (even + apart * (1.0 / accel_after - even))
+    return rate, rate_after
+
+
+@compiled
+def _axes_can(tangents: Floats, limits: AxisLimits, rate: float, rate_after: float) -> bool:
+    """Tell whether every axis can go from one direction to the other while the path speed changes."""
+    for i in range(tangents.shape[1]):
+        turned = abs(rate_after * tangents[1, i] - rate * tangents[0, i])
+        steady = max(rate, rate_after) * abs(tangents[1, i] - tangents[0, i])
+        along = max(abs(tangents[0, i]), abs(tangents[1, i])) * abs(rate_after - rate)
+        used = axis_use(turned, steady, along, rate / (rate + rate_after))
+        if used > OVERLAP_BEND_SHARE * limits.acceleration[i]:
+            return False
+    return True
 
 
 @compiled
@@ -199,22 +359,24 @@ def _pull(seg: Segments, k: int, limits: AxisLimits, at: float, out: Floats) -> 
 
 @compiled
 def _insert(
-    seg: Segments, paths: Paths, g: int, axes: tuple[int, int, int], cut: float, speed: float
+    seg: Segments, paths: Paths, g: int, axes: tuple[int, int, int], time: float, speeds: tuple[float, float]
 ) -> None:
-    """Shorten the last two segments of path `g` by `cut` at their corner and put an OVERLAP between them."""
+    """Put an OVERLAP that takes `time`, with its speeds at both ends, between the last two segments of path `g`."""
     path, work = paths.row[g], paths.blend[g]
     k, between = slot(paths, g, path["tail"] - 2), slot(paths, g, path["tail"] - 1)
     following = slot(paths, g, path["tail"])
     n = seg.start.shape[1]
     point = work[SCRATCH_POINTS : SCRATCH_POINTS + n]
+    cut, cut_after = 0.5 * time * speeds[0], 0.5 * time * speeds[1]
     _copy(seg, between, following)
     _shorten(seg, k, cut, False, point)
-    _shorten(seg, following, cut, True, point)
+    _shorten(seg, following, cut_after, True, point)
     tag = int(seg.row[following]["tag"])
-    set_common(seg, between, seg.end[k], seg.start[following], speed, OVERLAPS, tag)
+    set_common(seg, between, seg.end[k], seg.start[following], max(speeds[0], speeds[1]), OVERLAPS, tag)
     seg.row[between]["kind"] = OVERLAP
-    seg.row[between]["length"] = 2.0 * cut
+    seg.row[between]["length"] = cut + cut_after
     geo = seg.geo[between]
+    geo[ENTRY] = speeds[0] / (speeds[0] + speeds[1])
     segment_tangent(seg, k, 1.0, point)
     for j in range(3):
         seg.plane[between, j] = axes[j]
@@ -222,9 +384,9 @@ def _insert(
     segment_tangent(seg, following, 0.0, point)
     for j in range(3):
         i = axes[j]
-        geo[SECOND + j] = seg.end[between, i] - seg.start[between, i] - 2.0 / 3.0 * cut * point[i]
+        geo[SECOND + j] = seg.end[between, i] - seg.start[between, i] - 2.0 / 3.0 * cut_after * point[i]
     path["tail"] += 1
-    work[CUT], work[CUT_LINE] = cut, path["tail"] - 1
+    work[CUT], work[CUT_LINE] = cut_after, path["tail"] - 1
 
 
 @compiled
@@ -236,7 +398,7 @@ def _copy(seg: Segments, k: int, to: int) -> None:
     copy["kind"], copy["length"], copy["end_speed"] = row["kind"], row["length"], row["end_speed"]
     for j in range(3):
         seg.plane[to, j] = seg.plane[k, j]
-    for j in range(SWEEP_RAD + 1):
+    for j in range(RISE + 1):
         seg.geo[to, j] = seg.geo[k, j]
 
 

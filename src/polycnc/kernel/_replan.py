@@ -64,7 +64,7 @@ def _frozen_with_jerk(seg: Segments, paths: Paths, g: int, dt: float) -> int:
         row = seg.row[slot(paths, g, count)]
         if row["kind"] == WAIT:
             return count
-        least = min(least, least_accel(row, 0.0))
+        least = min(least, least_accel(row, path))
         passed += row["length"]
         if passed >= way + brake_way(speed, 0.0, 0.0, least, jerk):
             return count
@@ -97,7 +97,7 @@ def frozen_until(seg: Segments, paths: Paths, g: int, dt: float) -> int:
         s = 0.0
         used = min(margin, left)
         margin -= used
-        square -= 2.0 * least_accel(row, path["jerkrel"]) * (left - used)
+        square -= 2.0 * least_accel(row, path) * (left - used)
         if square <= 0.0 and margin <= 0.0:
             return count
     return int(path["prepared"])

@@ -37,8 +37,8 @@ TURN = 4  # flag, set here: no feed axis moves, so length and speed are those of
 
 GEO = BEZIER_SIZE
 GEO_WITH_JERK = GEO + 13
-# Geometry of an ARC.
-CENTER_P, CENTER_Q, RADIUS_START, RADIUS_END, SWEEP_RAD = 0, 1, 2, 3, 4
+# Geometry of an ARC; RISE is how far it goes out of its plane, before an OVERLAP takes some of it.
+CENTER_P, CENTER_Q, RADIUS_START, RADIUS_END, SWEEP_RAD, RISE = 0, 1, 2, 3, 4, 5
 # Geometry of a CIRCLE3D is laid out in `_circle3d`; the row has room for one more point after it.
 CIRCLE3D_RADIUS, CIRCLE3D_LENGTH = 10, 11
 WORK_POINT = 13
@@ -206,21 +206,22 @@ def set_arc(
     in_plane = abs(sweep_rad) * 0.5 * (radius_start + radius_end)
     if in_plane < TINY or radius_start < TINY or radius_end < TINY:
         return False
-    counted = in_plane * in_plane
+    rise = 0.0
     for i in range(start.shape[0]):
         if i != axis_p and i != axis_q and feed_axis[i] != 0:
             d = end[i] - start[i]
-            counted += d * d
+            rise += d * d
     set_common(seg, k, start, end, speed_mm_s, flags, tag)
     seg.row[k]["kind"] = ARC
     seg.plane[k, 0] = axis_p
     seg.plane[k, 1] = axis_q
-    seg.row[k]["length"] = math.sqrt(counted)
+    seg.row[k]["length"] = math.sqrt(in_plane * in_plane + rise)
     seg.geo[k, CENTER_P] = center_p
     seg.geo[k, CENTER_Q] = center_q
     seg.geo[k, RADIUS_START] = radius_start
     seg.geo[k, RADIUS_END] = radius_end
     seg.geo[k, SWEEP_RAD] = sweep_rad
+    seg.geo[k, RISE] = math.sqrt(rise)
     return True
 
 
