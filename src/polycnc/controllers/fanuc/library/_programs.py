@@ -146,7 +146,7 @@ def cnc_search(link: Link, number: SHORT) -> EW:
         try:
             device.select_program(number)
         except ControlError:
-            return EW.EW_BUSY
+            raise Refused(EW.EW_BUSY) from None
     return EW.EW_OK
 
 
@@ -174,7 +174,7 @@ def cnc_delall(link: Link) -> EW:
     try:
         kept = device.programs.delete_unprotected()
     except ControlError as error:
-        return EW.EW_PROT if error.reason is Refusal.PROTECTED else EW.EW_BUSY
+        raise Refused(EW.EW_PROT if error.reason is Refusal.PROTECTED else EW.EW_BUSY) from None
     return EW.EW_PROT if kept else EW.EW_OK
 
 
@@ -189,7 +189,7 @@ def cnc_delete(link: Link, number: SHORT) -> EW:
     try:
         device.programs.delete(number)
     except ControlError as error:
-        return EW.EW_PROT if error.reason is Refusal.PROTECTED else EW.EW_BUSY
+        raise Refused(EW.EW_PROT if error.reason is Refusal.PROTECTED else EW.EW_BUSY) from None
     return EW.EW_OK
 
 
