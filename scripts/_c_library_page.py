@@ -107,8 +107,9 @@ refused.
 
 ## What there is not
 
-No booting of a served board: `BootFile` answers 202, as of a board that cannot be reached at its addresses. Functions that no manual of these systems has are not
-exported: the loader names them.
+No booting of a served board: `BootFile` answers 202, as of a board that cannot be reached at its addresses. No kernel drivers, and
+no memory windows of an HSSB. Functions that no manual of these systems has, those of later FOCAS libraries among them, are not
+exported: the loader names them, and `--missing` lists them beforehand.
 """
 
 

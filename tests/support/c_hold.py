@@ -80,7 +80,7 @@ class Hold:
     told: list[str] = field(default_factory=list)
     codes: set[Any] = field(default_factory=set)
     done: Counter[str] = field(default_factory=Counter)
-    """How often a function was carried out, with its first success code or without one."""
+    """How often a function was carried out and not refused."""
     _is_meant: bool = False
     _null: Slot | None = None
 
@@ -265,7 +265,7 @@ class Hold:
         code = None if function.result == "void" else results.pop(0)
         if self.python.refused:
             return code, nothing
-        self.done[function.name] += 1 if not function.coded or not code else 0
+        self.done[function.name] += 1
         left = []
         for each in passed:
             if not each.slot.writes:

@@ -83,8 +83,9 @@ def _imc_hold(monkeypatch: pytest.MonkeyPatch, folder: Path, rounds: int, seed: 
             random.Random(seed),
             _imc_number,
             _size,
-            meant=c_meant.IMC,
-            state=twin.snapshot,
+            _larger_than_a_frame,
+            c_meant.IMC,
+            twin.snapshot,
             objects={1: mine},
         )
         opening = {"IMC_Open", "IMC_OpenX", "IMC_OpenUsePassword", "IMC_Close"}

@@ -96,7 +96,7 @@ def test_a_program_says_the_same_without_a_server(name: str, tmp_path: Path) -> 
     file.write_text(f'[doors]\nhttp = 0\n[[machine]]\nname = "a"\ncontroller = "{kind}"\n{machine}')
     ran = subprocess.run(
         [program], env=environment(POLYCNC_SERVED=str(file)), input=wanted.given, capture_output=True, text=True,
-        timeout=60, check=False,
+        timeout=600, check=False,
     )  # fmt: skip
     assert (ran.stdout, ran.stderr) == (wanted.expected, "")
 
@@ -106,7 +106,9 @@ def test_the_child_of_a_fork_has_no_machines(tmp_path: Path) -> None:
     _built("fanuc", tmp_path)
     (tmp_path / "forks.c").write_text(FORKS)
     program = _linked("fanuc", tmp_path / "forks.c", tmp_path)
-    ran = subprocess.run([program], env=environment(), capture_output=True, text=True, timeout=60, check=True)
+    ran = subprocess.run(
+        [program], env=environment(), capture_output=True, text=True, timeout=600, check=True
+    )
     assert ran.stdout == "open 0, child 42, read 0\n"
 
 

@@ -495,6 +495,19 @@ def test_a_polling_program_sees_time_pass_and_one_cycle_in_one_round() -> None:
     assert control.clock.cycles == 0
 
 
+def test_a_program_that_tries_again_what_is_busy_sees_time_pass() -> None:
+    control, handle = attached(Poll(1))
+    to = bytes(fwlib.ODBPOS(idata=1, ldata=700))
+    for _ in range(2):  # one is carried out, one waits
+        assert fwlib.cnc_incpoint(handle, 1, 0, 1, 6000, to)[0] == 0
+    tried = 0
+    while fwlib.cnc_incpoint(handle, 1, 0, 1, 6000, to)[0] == fwlib.EW_BUSY:
+        tried += 1
+        assert tried < 1000
+    assert control.clock.cycles == tried - 1 > 5
+    assert control.positions.read()[0].machine >= 690
+
+
 def test_controls_with_one_clock_stay_in_step() -> None:
     attached()
     clock: Any = Poll(3)

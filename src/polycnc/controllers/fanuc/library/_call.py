@@ -22,7 +22,8 @@ R = TypeVar("R")
 def call(body: Callable[Concatenate[Link, P], R]) -> Callable[Concatenate[int, P], R]:
     """Make a function of the library of its body, which gets what the handle stands for.
 
-    On a handle of the network the request of that name takes the body's place.
+    On a handle of the network the request of that name takes the body's place. A program that is refused as busy tries
+    again: that counts as reading the same.
     """
 
     @wraps(body)
@@ -30,7 +31,12 @@ def call(body: Callable[Concatenate[Link, P], R]) -> Callable[Concatenate[int, P
         if isinstance(link, RemoteLink):
             result: R = carry_out(link, body.__name__, given)
             return result
-        return body(link, *given, **named)
+        try:
+            return body(link, *given, **named)
+        except Refused as refusal:
+            if refusal.code == EW.EW_BUSY:
+                link.read(EW.EW_BUSY)
+            raise
 
     return _of_node(either)
 

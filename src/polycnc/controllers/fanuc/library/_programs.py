@@ -159,7 +159,7 @@ def cnc_delall(link: Link) -> EW:
     try:
         kept = device.programs.delete_unprotected()
     except ControlError as error:
-        return EW.EW_PROT if error.reason is Refusal.PROTECTED else EW.EW_BUSY
+        raise Refused(EW.EW_PROT if error.reason is Refusal.PROTECTED else EW.EW_BUSY) from None
     return EW.EW_PROT if kept else EW.EW_OK
 
 

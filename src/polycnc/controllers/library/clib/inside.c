@@ -17,6 +17,7 @@ static int pc_python(void)
         PyConfig_InitPythonConfig(&config);
         config.install_signal_handlers = 0;
         config.parse_argv = 0;
+        config.configure_c_stdio = 0; /* what the program has read ahead stays its own */
         status = PyConfig_SetBytesString(&config, &config.program_name, said && *said ? said : PC_PYTHON);
         if (!PyStatus_Exception(status))
             status = Py_InitializeFromConfig(&config);
