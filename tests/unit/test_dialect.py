@@ -175,7 +175,8 @@ def test_compiled_tables_say_the_same(name: str) -> None:
     assert table.shape == (10_000,)
     for tenths in range(10_000):
         action = dialect.g_action(tenths / 10)
-        noted = dialect.notes_codes and action is Action.FEED_PER_MINUTE  # by ordinary blocks alone
+        ordinary = dialect.notes_codes or "feeds of before" in dialect.refuses
+        noted = ordinary and action is Action.FEED_PER_MINUTE  # by ordinary blocks alone
         assert table[tenths] == (0 if action is None or noted else action)
 
 
@@ -287,6 +288,8 @@ def test_the_dialect_of_a_program() -> None:
     ("program", "name", "reason"),
     [
         ("%\nO1000 (PART)\nG0 X1\n", "fanuc", "O1000 in line 2"),
+        ("%\nO1000 (PART; ROUGH)\nG0 X1;\nM30 ;\n", "fanuc", "O1000 in line 2"),
+        ("; part\nO1000\nG0 X1 ; fast\n", "din", ""),
         ("G0 X1\nN20 G65 P9010 A1\n", "fanuc", "G65 P9 in line 2"),
         ("G65 A1. B2 P9010\n", "fanuc", "G65 A1. B2 P9 in line 1"),
         ("G0 X1\n#101=5\nIF[#101GT3]GOTO10\n", "fanuc", "#101= in line 2"),

@@ -38,6 +38,19 @@ def test_words_that_are_no_tools(block: str, text: str) -> None:
     assert refusal(f"{block}\n") == text
 
 
+def test_a_second_t_beside_a_change_is_the_next_tool() -> None:
+    program = "T01T02M06\nG0 X1\nM06\n"
+    assert [each for each in moves(program, config=FIVE, dialect="fanuc") if "T" in each] == [
+        "M6 T1",
+        "M6 T2",
+    ]
+    state = accepted("T02T01M06\n", config=FIVE, dialect="fanuc").state
+    assert (state.tool, state.selected_tool) == (2, 1)
+    assert refusal("T1 T2\n", dialect="fanuc") == "1:4: 'T' is given twice without a tool change"
+    assert refusal("T1 T2 T3 M6\n", dialect="fanuc") == "1:7: 'T' is given twice in this block"
+    assert refusal("T1 T2 M6\n") == "1:4: 'T' is given twice in this block"
+
+
 # --- length
 
 

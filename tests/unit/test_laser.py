@@ -285,5 +285,5 @@ def test_other_outputs_and_machines_keep_m67_as_a_function() -> None:
     program = "G1 X1 F300\nM67 E{} Q20\nX2\nM2\n"
     for config, output in ((LASER, 1), (DRY, 0)):
         listed = moves(program.format(output), config=config, dialect="linuxcnc")
-        assert f"line X2 F300 with M67 E{output} Q20" in listed
+        assert f"line X2 F300 stop with M67 E{output} Q20" in listed
     assert refusal("G1 X1 F300\nM67 E0\n", config=LASER, dialect="linuxcnc") == "2:1: M67 without Q"

@@ -143,7 +143,7 @@ def test_modes_that_are_kept_come_back(program: str, end: tuple[float, float, fl
 
 def test_functions_have_their_words_in_their_events(tmp_path: Path) -> None:
     path = tmp_path / "part.ngc"
-    path.write_text("M62 P3 G1 X2 F100\nM67 E1 Q-2.5\nM101 P4.5 Q7\nM2\n", encoding="ascii")
+    path.write_text("M62 P3 G1 X2 F100\nM67 E1 Q-2.5\nX3\nM101 P4.5 Q7\nM2\n", encoding="ascii")
     words = [event.word for event in polycnc.run(path).events]
     assert [word for word in words if word[0] == "M"][:3] == ["M62 P3", "M67 E1 Q-2.5", "M101 P4.5 Q7"]
 

@@ -110,9 +110,11 @@ class PassedEvents:
 
     def _tell_one_by_one(self, passed: Passed | PassedRun) -> None:
         if self.on_event is not None:
-            each = [passed.event] if isinstance(passed, Passed) else passed.events
-            for event in each:
-                self.on_event(event)
+            several = (
+                [passed] if isinstance(passed, Passed) else [passed[at] for at in range(len(passed.events))]
+            )
+            for each in several:
+                self.on_event(each.event)
 
 
 def _note_rests(moment: RunProgress, cycles: npt.NDArray[np.int64]) -> None:

@@ -17,7 +17,7 @@ from polycnc.nc.blocks._block import BlockContext
 from polycnc.nc.blocks._channel_state import of_another_channel
 from polycnc.nc.blocks._moves import Stop, Wait
 from polycnc.nc.blocks._tool_offsets import tool_data
-from polycnc.nc.blocks._words import GWord, MWord, code_text, whole_number
+from polycnc.nc.blocks._words import NEXT_TOOL, GWord, MWord, code_text, whole_number
 from polycnc.nc.modal._actions import M_SENSES, SPINDLE_SENSES, Action, Group, MAction, coolant_with
 from polycnc.nc.modal._modal import FEED_MODE, FEED_PER_MINUTE, INCH
 from polycnc.nc.text._scan_plain import Word
@@ -71,8 +71,11 @@ def select_tool(block: BlockContext) -> None:
         return
     if block.dialect.tool_word == "turret":
         block.items.append(_turn_turret(block, word))
-    else:
-        block.after.selected_tool = whole_number(word, "a tool number", block.problem)
+        return
+    block.after.selected_tool = whole_number(word, "a tool number", block.problem)
+    following = block.words.take(NEXT_TOOL)
+    if following is not None and not any(m.action is MAction.TOOL_CHANGE for m in block.words.m):
+        raise block.problem("'T' is given twice without a tool change", "Write each address once.", following)
 
 
 def functions(block: BlockContext) -> None:
@@ -243,6 +246,8 @@ def _change_tool(block: BlockContext, name: str) -> Wait:
     """Take the selected tool; on some controls that stops the spindle."""
     block.after.tool = block.after.selected_tool
     tool_data(block, block.after.tool)
+    if (following := block.words.by_letter.get(NEXT_TOOL)) is not None:
+        block.after.selected_tool = whole_number(following, "a tool number", block.problem)
     events: tuple[str, ...] = (f"{name} T{block.after.tool}",)
     if block.dialect.tool_change_stops_spindle and block.after.spindle.direction:
         block.after.spindle = replace(block.after.spindle, direction=0)

@@ -81,9 +81,8 @@ class EventRun:
 
     def part(self, first: int, after: int) -> EventRun:
         """Return some of the events."""
-        return EventRun(
-            *(each[first:after] for each in (self.speed, self.code, self.number)), self.tag[first:after]
-        )
+        here = slice(first, after)
+        return EventRun(self.speed[here], self.code[here], self.number[here], self.tag[here])
 
     def __getitem__(self, at: int) -> Event:
         tag = int(self.tag[at])

@@ -135,7 +135,7 @@ def _parts(block: BlockContext, g: GWord, profile: tuple[Block, ...], begin: com
         values: dict[str, float] = {}
         for word in row.words:
             if word.letter == "G":
-                motion = _MOTIONS.get(block.dialect.g_action(word.value), motion)
+                motion = _MOTIONS.get(block.dialect.g_action(word.value) or Action.MOTION_OFF, motion)
             else:
                 values[word.letter] = word.value
         end = _point(block, values, at)

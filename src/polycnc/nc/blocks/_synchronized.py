@@ -125,24 +125,19 @@ class _Thread:
 
 def _threading(block: BlockContext, values: dict[int, float]) -> Iterator[QueueItem]:
     x, z = turns.axes(block)
-    rotary = block.after.modal.rotary
-    for axis in [axis for axis in values if axis != z]:
-        name = block.after.axis_names[axis]
-        if rotary[axis]:
-            raise block.problem(
-                f"a thread of several passes does not move axis {name}", "Remove it.", block.words.first(name)
-            )
-        block.note(f"'{name}' has no effect on a thread of several passes, which moves along Z")
+    if wrong := [axis for axis in values if axis != z]:
+        name = block.after.axis_names[wrong[0]]
+        raise block.problem(
+            f"a thread of several passes moves along Z, not {name}", "Remove it.", block.words.first(name)
+        )
     if block.after.frame.active:
         raise block.problem(
             "a thread of several passes in turned coordinates",
             "Take a work offset without R.",
             block.move_word,
         )
-    if z not in values:
-        raise block.problem("a thread of several passes without Z", "Say where it ends.", block.move_word)
     start = block.start
-    end = motion.target(block, {z: values[z]})[z]
+    end = motion.target(block, values)[z]
     way = -1.0 if end < start[z] else 1.0
     thread = _thread(block, x, abs(end - start[z]))
     outside = 1.0 if thread.offset > 0.0 else -1.0

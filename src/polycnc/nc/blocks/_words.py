@@ -152,7 +152,7 @@ class WordSorter:
             elif word.letter == "M" and word.index is None:
                 self._add_m(word, words, fail)
             else:
-                _add_value(word, words, fail)
+                _add_value(word, words, fail, two_tools=self._dialect.two_tools)
 
     def _add_g(self, word: Word, words: BlockWords, text: ProgramText, fail: Fail) -> None:
         action = self._codes.get(word.value) or self._dialect.g_action(word.value)
@@ -237,11 +237,19 @@ def _blocks_with(code: str, text: ProgramText) -> int:
     return len({content.rfind(b"\n", 0, found.start()) for found in re.finditer(pattern, content)})
 
 
-def _add_value(word: Word, words: BlockWords, fail: Fail) -> None:
+def _add_value(word: Word, words: BlockWords, fail: Fail, *, two_tools: bool) -> None:
     letter = word.letter if word.index is None else f"{word.letter}{word.index}"
+    if two_tools and letter == "T" and letter in words.by_letter:
+        letter = NEXT_TOOL
     if letter in words.by_letter:
-        raise fail(f"'{letter}' is given twice in this block", "Write each address once.", word)
+        raise fail(
+            f"'{letter.removesuffix(',')}' is given twice in this block", "Write each address once.", word
+        )
     words.by_letter[letter] = word
+
+
+NEXT_TOOL = "T,"
+"""The address of a second T beside a tool change: the tool after the one that comes now."""
 
 
 def dwell_seconds(word: Word, unit: str) -> float:

@@ -251,6 +251,9 @@ class Dialect(StrictModel):
         default="select",
         description='"select": T chooses the tool of the next change; "turret": T0203 turns to tool 2 with offset 3.',
     )
+    two_tools: bool = Field(
+        default=False, description="T01 T02 M6 changes to tool 1 and lets tool 2 be the next one."
+    )
     rapid_exact_stop: bool = Field(default=True, description="Rapid moves come to rest at both ends.")
     free_corners: bool = Field(
         default=False,

@@ -74,6 +74,10 @@ _SIGNS = (
     _sign("fanuc", _NUMBER + rb"(?:/[0-9]?[ \t]*)?(?:" + _MACRO + rb")"),
     _sign("fanuc", _LINE + rb"O[ \t]*[0-9]{1,8}(?=[ \t]*(?:[\r\n(;]|\Z))"),
 )
+_NUMBERED = _SIGNS[-1]
+_BRACKETS = re.compile(rb"\([^)\r\n]*\)")
+_REMARK = re.compile(rb";[ \t]*[A-Za-z]{3,}")
+"""A remark after a semicolon, which ends a block on controls whose programs have nothing but a number."""
 _TURRET = re.compile(rb"(?<![A-Z])T[0-9]{3,4}(?![0-9])", re.IGNORECASE)
 _MILL = re.compile(
     rb"(?<![A-Z])(?:Y[ \t]*[-+.0-9#\[]|M[ \t]*0?6(?![0-9])|G[ \t]*4[34](?![0-9]))", re.IGNORECASE
@@ -116,6 +120,8 @@ def choose_dialect(text: ProgramText, explicit: str | Path | Dialect | None = No
             return ChosenDialect(default, problem=_unreadable(text, sign, found))
     for sign in _SIGNS:
         if found := sign.pattern.search(words):
+            if sign is _NUMBERED and _REMARK.search(_BRACKETS.sub(b"", with_comments)):
+                continue
             name = sign.name
             if (lathe := _TURNING.get(name)) and _TURRET.search(words) and not _MILL.search(words):
                 name = lathe
