@@ -37,7 +37,7 @@ def scene(system: str) -> Callable[[Callable[[Bench], None]], Callable[[Bench], 
 
 
 MACHINE = """
-fwversion = 33021
+fwversion = 391
 hwversion = 33107
 [[axis]]
 lag_s = 0.004
