@@ -229,6 +229,13 @@ def couplings(b: Bench) -> None:
     b.set(IF, 3, enasyn=-1, startsyn=-1)
     b.set(IF, 4, enasyn=0)
     b.step(40)
+    b.MoveInTime(20, 33, 2, IF)
+    b.set(IF, 2, startsyn=-1)
+    b.step(5)
+    b.GearInTime(0.5, 0, 0, 9, 2, IF)
+    b.step(25)
+    b.set(IF, 2, startsyn=-1)
+    b.step(15)
 
 
 def segment(*ends: int, center: tuple[int, int] = (0, 0), direction: int = 0) -> lib.PFIFOSegData:
