@@ -80,7 +80,7 @@ def singly(b: Bench) -> None:
     b.MoveVelocity(2 * ONE, 2, IF)
     b.step(30)
     for k, name in enumerate(CELLS):
-        b.set(IF, -3 - k, **{name: (-1) ** k * (12345 + 617 * k)})
+        b.set(IF, -3 - k, **{name: (-1) ** (k + 1) * (12345 + 617 * k)})
         (b.GetParam16, b.GetParam32, b.GetParam48)[PARAMETERS[name].words - 1](address(name), 1000 + k)
     b.step(2)
     writes = [
@@ -422,7 +422,7 @@ def limits(b: Bench) -> None:
     b.set(IF, 1, error=0, run=-1, exitfilt=0x80, poserrlim=5)
     b.set(IF, 2, error=0, run=-1, vellim=2.0)
     b.set(IF, 3, encpctr=-0x8000, biciraxis=-1, clrcapfifo=0, counter=0)
-    for axis, speed in enumerate((6, 5, 4, -8)):
+    for axis, speed in enumerate((6, 5, -4, -8)):
         b.MoveVelocity(speed * ONE, axis, IF)
     b.card.set_input(3, True)
     b.card.set_input(18, True)
