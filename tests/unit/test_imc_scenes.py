@@ -236,6 +236,11 @@ def couplings(b: Bench) -> None:
     b.step(25)
     b.set(IF, 2, startsyn=-1)
     b.step(15)
+    b.GearFree(0.5, 0, 0, 3, IF)
+    b.step(6)
+    b.MoveInTime(9, 40, 3, IF)
+    b.set(IF, 3, startsyn=-1)
+    b.step(15)
 
 
 def segment(*ends: int, center: tuple[int, int] = (0, 0), direction: int = 0) -> lib.PFIFOSegData:
