@@ -241,6 +241,11 @@ def couplings(b: Bench) -> None:
     b.MoveInTime(9, 40, 3, IF)
     b.set(IF, 3, startsyn=-1)
     b.step(15)
+    b.MoveSuperimposed(23, 3, IF)
+    b.step(20)
+    b.MoveInTime(12, -37, 3, IF)
+    b.set(IF, 3, slaveabs=-1, startsyn=-1)
+    b.step(20)
 
 
 def segment(*ends: int, center: tuple[int, int] = (0, 0), direction: int = 0) -> lib.PFIFOSegData:
@@ -331,6 +336,12 @@ def contours(b: Bench) -> None:
     b.ClearFIFO(C)
     b.set(IF, startgroup=0)
     b.step(4)
+    b.set(IF, 1, run=0)
+    b.set(IF, groupnum=4, group_a=1, groupsmooth=2, startgroup=-1)
+    b.PutContourData([3, -2, 4, 5, -6, 1, 2, -3], 8, C)
+    b.step(5)
+    b.set(IF, 1, run=-1)
+    b.step(8)
 
 
 NUMBERS = (3, -5, 70000, -70001, (1 << 31) - 3, -(1 << 31) + 9, 0, 0x1234567)
@@ -449,7 +460,7 @@ def limits(b: Bench) -> None:
 ELSEWHERE = re.compile(
     r"imc\.(IMC_(FindNetCard|Open\w*|Close)|option\.\w+|status\.(?!IMC_OK|IMC_OUT_OF_RANGE)\w+|type\.(IMC\w*|__int64)|concept\.rbfifo"
     r"|struct\.NIC_INFO|file\.\w+|const\.(openMode|AXISNUM|limits)|concept\.(library|position_overflow)"
-    r"|param\.(eventid|eventbase|out1|out2|waitfilt|waitequ|encsctr|aiod|stepmod|dirtime|steptime|clrififo|fixvel|group_[a-m]))"
+    r"|param\.(eventid|eventbase|out1|out2|waitfilt|waitequ|encsctr|aiod|stepmod|dirtime|steptime|clrififo|fixvel|group_[b-m]))"
 )
 CONFORMANCE = load_conformance()
 ROWS = [
