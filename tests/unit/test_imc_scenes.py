@@ -338,6 +338,7 @@ def contours(b: Bench) -> None:
     b.step(4)
     b.set(IF, 1, run=0)
     b.set(IF, groupnum=4, group_a=1, groupsmooth=2, startgroup=-1)
+    b.step(1)
     b.PutContourData([3, -2, 4, 5, -6, 1, 2, -3], 8, C)
     b.step(5)
     b.set(IF, 1, run=-1)
