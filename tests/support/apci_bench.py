@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterator, Mapping
+from functools import partial
 from itertools import pairwise, zip_longest
 from typing import Any
 
@@ -77,9 +78,9 @@ def _readers() -> Iterator[tuple[str, str, Callable[[int], float]]]:
             for element in elements:
                 yield "axis", name if len(elements) == 1 else f"{name}.{element}", _through(call, element)
         elif re.fullmatch(r"(int|long)( \*)? ?an, .* \*\w+", taken):
-            yield "axis", name, lambda an, call=call: _last(call(an))
+            yield "axis", name, partial(_of_axis, call)
         elif re.fullmatch(r"void|(long|double) \*\w+", taken):
-            yield "board", name, lambda _, call=call: _last(call())
+            yield "board", name, partial(_of_board, call)
 
 
 def _through(call: Callable[[Any], Any], element: str) -> Callable[[int], float]:
@@ -89,6 +90,14 @@ def _through(call: Callable[[Any], Any], element: str) -> Callable[[int], float]
         return float(getattr(record, element))
 
     return read
+
+
+def _of_axis(call: Callable[[int], Any], an: int) -> float:
+    return _last(call(an))
+
+
+def _of_board(call: Callable[[], Any], _: int) -> float:
+    return _last(call())
 
 
 def _last(value: Any) -> float:
@@ -209,8 +218,8 @@ class Bench:
         pcap.rdci(1000, whole := pcap.CIBUF())
         pcap.rdcd(1000, real := pcap.CDBUF())
         for letter, variables in (("I", np.array(whole.ci)), ("D", np.array(real.cd[:_FIRST]))):
-            for k in variables.nonzero()[0]:
-                self.tracks.setdefault(f"C{letter}{k}", [0.0] * (len(self.tracks["rdErrorReg"]) - 1))
+            for index in variables.nonzero()[0]:
+                self.tracks.setdefault(f"C{letter}{index}", [0.0] * (len(self.tracks["rdErrorReg"]) - 1))
             for name in [each for each in self.tracks if each.startswith(f"C{letter}")]:
                 note(name, float(variables[int(name[2:])]))
         note("interrupts", float(sum(self.interrupts)))

@@ -13,7 +13,7 @@ from pathlib import Path
 import pytest
 
 from polycnc.conformance import State, load_conformance
-from polycnc.controllers.apci import pcap
+from polycnc.controllers.apci import ErrorReg, pcap
 from polycnc.controllers.apci.sap._commands import AXIS_QUALIFIERS, SYSTEM_VARIABLES
 from support.apci_bench import Bench, difference
 from support.apci_pc import near
@@ -351,7 +351,7 @@ def searches(b: Bench) -> None:
     b.step(130)
     b.lps(2, 0)
     for an in (0, 1, 2):
-        b.wrAxVarDbl(an, 2, float(sum(k * pcap.recording(an)[:, k].sum() for k in range(3))))
+        b.wraux(an, float(sum(k * pcap.recording(an)[:, k].sum() for k in range(3))))
     pcap.lpr(pcap.LATCH_INFOS(san=2))
     b.jhi({0: 3.0, 1: -2.5})
     b.board.set_input(3, True)
@@ -383,7 +383,7 @@ def searches(b: Bench) -> None:
     for an in (0, 2):
         record = pcap.TSRP(an=an)
         pcap.rdlp(record)
-        b.wrAxVarDbl(an, 3, record.lp)
+        b.wraux(an, record.lp + 0.5)
     b.board.set_input(15, False)
     b.step(30)
 
@@ -425,7 +425,7 @@ def moves(b: Bench) -> None:
     b.js(0, 1)
     b.step(20)
     b.mha({0: 1.25, 1: 0.75, 3: 4.5}, (500.0, 35.0, -6.0), 120.0, 1.0, -0.5)
-    b.step(110, 10)
+    b.step(420, 20)
     b.js(0, 1, 3)
     b.step(10)
     b.mhr({1: 0.5, 0: -0.375, 2: 0.125}, (500.0, 35.0, 9.0), -0.0, 0.25, -0.5)
@@ -433,7 +433,7 @@ def moves(b: Bench) -> None:
     b.js(0, 1, 2, 3)
     b.step(20)
     b.mca3d((0, 1, 2), (300.0, 25.0, -5.0), 80.0, 1.0, 0.5, 3.0, 0.25, -0.5, 1.0)
-    b.step(110, 10)
+    b.step(420, 20)
     b.js(0, 1, 2)
     b.step(20)
     b.mcr3d((2, 0, 1), (300.0, 25.0, 4.0), -60.0, 1.0, 0.75, -1.5, 1.0, 0.5, -0.25)
@@ -542,7 +542,7 @@ def values(b: Bench) -> None:
     """A number of its own in every register that the PC can write, then in each that a program can."""
     for k, name in enumerate(sorted(each for each in pcap.FUNCTIONS if each in WRITES)):
         for an in range(3) if name in OF_AXES else ("",):
-            number = 3 * k + 2 + (an or 0)
+            number = 3 * k + 2 + (an if isinstance(an, int) else 0)
             value = number if name in WHOLE else number / 8
             getattr(b, name)(*([] if an == "" else [an]), value)
     b.step(15)
@@ -579,7 +579,7 @@ def values(b: Bench) -> None:
 @scene("[[axis]]\n[[axis]]\n")
 def words(b: Bench) -> None:
     """What expressions of programs give, of constants and of variables, in whole numbers and in others."""
-    whole = (
+    whole: tuple[str, ...] = (
         "a + b",
         "a - b",
         "a * b",
@@ -603,7 +603,7 @@ def words(b: Bench) -> None:
         "TRUNC(y)",
         "ROUND(y)",
     )
-    real = (
+    real: tuple[str, ...] = (
         "x + y",
         "x - y",
         "x * y",
@@ -617,7 +617,7 @@ def words(b: Bench) -> None:
         "TAN(x)",
     )
     real += ("ARCTAN(y)", "LN(x)", "EXP(y)", "x + a", "-y", "a * x - b * y", "(x + 1) * -2")
-    tests = (
+    tests: tuple[str, ...] = (
         "a < b",
         "a <= 37",
         "a > b",
@@ -680,7 +680,7 @@ def refusals(b: Bench) -> None:
     b.wrjac(1, 0.0)
     b.jr({1: 2.0})
     b.step(5)
-    b.board.raise_error(0x40380)
+    b.board.raise_error(ErrorReg(0x40380))
     b.wrModeReg(0x40000)
     b.smlr({0: 0.75}, (400.0, 20.0, 15.0))
     b.ssf(0, 1003, 700.0)

@@ -389,6 +389,9 @@ def test_what_the_card_is_can_be_read_and_not_written() -> None:
     send(card, IFIFO, *((name, 1) for name in names))
     card.advance(1)
     assert [card.read(name) for name in names] == shown
+    assert shown[3:] == [100_000_000, 1]
+    high = Card(parse_card("number_of_axes = 32\nfwversion = 65021\nhwversion = 43690\n"))
+    assert [high.read(name) for name in names[:3]] == [32, 65021, 43690]
 
 
 @pytest.mark.covers("imc.type.U16.32")

@@ -73,8 +73,8 @@ def expected(name: str, words: int, written: list[int]) -> list[int]:
         return [signed(max(left, 0), words)] * AXES
     if name in SHARED:
         return [written[-1]] * AXES
-    if name == "aio":  # terminals 0 to 2 are as they are
-        return [value & ~7 for value in written]
+    if name == "aio":  # terminals 0 to 2 have no switch, which is active low
+        return [value | 7 for value in written]
     return written
 
 

@@ -37,7 +37,7 @@ def scene(system: str) -> Callable[[Callable[[Bench], None]], Callable[[Bench], 
 
 
 MACHINE = """
-fwversion = 33021
+fwversion = 391
 hwversion = 33107
 [[axis]]
 lag_s = 0.004
@@ -80,7 +80,7 @@ def singly(b: Bench) -> None:
     b.MoveVelocity(2 * ONE, 2, IF)
     b.step(30)
     for k, name in enumerate(CELLS):
-        b.set(IF, -3 - k, **{name: (-1) ** k * (12345 + 617 * k)})
+        b.set(IF, -3 - k, **{name: (-1) ** (k + 1) * (12345 + 617 * k)})
         (b.GetParam16, b.GetParam32, b.GetParam48)[PARAMETERS[name].words - 1](address(name), 1000 + k)
     b.step(2)
     writes = [
@@ -229,6 +229,23 @@ def couplings(b: Bench) -> None:
     b.set(IF, 3, enasyn=-1, startsyn=-1)
     b.set(IF, 4, enasyn=0)
     b.step(40)
+    b.MoveInTime(20, 33, 2, IF)
+    b.set(IF, 2, startsyn=-1)
+    b.step(5)
+    b.GearInTime(0.5, 0, 0, 9, 2, IF)
+    b.step(25)
+    b.set(IF, 2, startsyn=-1)
+    b.step(15)
+    b.GearFree(0.5, 0, 0, 3, IF)
+    b.step(6)
+    b.MoveInTime(9, 40, 3, IF)
+    b.set(IF, 3, startsyn=-1)
+    b.step(15)
+    b.MoveSuperimposed(23, 3, IF)
+    b.step(20)
+    b.MoveInTime(12, -37, 3, IF)
+    b.set(IF, 3, slaveabs=-1, startsyn=-1)
+    b.step(20)
 
 
 def segment(*ends: int, center: tuple[int, int] = (0, 0), direction: int = 0) -> lib.PFIFOSegData:
@@ -319,6 +336,13 @@ def contours(b: Bench) -> None:
     b.ClearFIFO(C)
     b.set(IF, startgroup=0)
     b.step(4)
+    b.set(IF, 1, run=0)
+    b.set(IF, groupnum=4, group_a=1, groupsmooth=2, startgroup=-1)
+    b.step(1)
+    b.PutContourData([3, -2, 4, 5, -6, 1, 2, -3], 8, C)
+    b.step(5)
+    b.set(IF, 1, run=-1)
+    b.step(8)
 
 
 NUMBERS = (3, -5, 70000, -70001, (1 << 31) - 3, -(1 << 31) + 9, 0, 0x1234567)
@@ -415,7 +439,7 @@ def limits(b: Bench) -> None:
     b.set(IF, 1, error=0, run=-1, exitfilt=0x80, poserrlim=5)
     b.set(IF, 2, error=0, run=-1, vellim=2.0)
     b.set(IF, 3, encpctr=-0x8000, biciraxis=-1, clrcapfifo=0, counter=0)
-    for axis, speed in enumerate((6, 5, 4, -8)):
+    for axis, speed in enumerate((6, 5, -4, -8)):
         b.MoveVelocity(speed * ONE, axis, IF)
     b.card.set_input(3, True)
     b.card.set_input(18, True)
@@ -437,7 +461,7 @@ def limits(b: Bench) -> None:
 ELSEWHERE = re.compile(
     r"imc\.(IMC_(FindNetCard|Open\w*|Close)|option\.\w+|status\.(?!IMC_OK|IMC_OUT_OF_RANGE)\w+|type\.(IMC\w*|__int64)|concept\.rbfifo"
     r"|struct\.NIC_INFO|file\.\w+|const\.(openMode|AXISNUM|limits)|concept\.(library|position_overflow)"
-    r"|param\.(eventid|eventbase|out1|out2|waitfilt|waitequ|encsctr|aiod|stepmod|dirtime|steptime|clrififo|fixvel|group_[a-m]))"
+    r"|param\.(eventid|eventbase|out1|out2|waitfilt|waitequ|encsctr|aiod|stepmod|dirtime|steptime|clrififo|fixvel|group_[b-m]))"
 )
 CONFORMANCE = load_conformance()
 ROWS = [
