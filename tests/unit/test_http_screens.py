@@ -105,6 +105,30 @@ def test_a_program_of_cpl_writes_on_the_screen_and_gets_the_keys_that_are_presse
     visit("bosch", Machinery("m", memory=root), ask)
 
 
+def test_a_program_that_is_put_into_a_bosch_control_is_selected_and_started(tmp_path: Path) -> None:
+    async def ask(client: Any, machine: ServedMachine) -> None:
+        async def command(name: str, **given: Any) -> int:
+            answer = await client.post("/commands", json={"command": name, **given})
+            return int(answer.status_code)
+
+        assert (await client.put("/programs/PART.npg", content="N10 G4 F9\nM30\n")).status_code == 201
+        (tmp_path / "ROOT.npg").write_text("N10 G4 F9\nM30\n")
+        for name in ("ROOT.npg", "PART.npg"):
+            assert await command("select_program", program=name) == 200
+            assert await command("cycle_start") == 200
+            machine.served.advance(20)
+            shown = (await client.get("/status")).json()["channels"][0]
+            assert (shown["program"], shown["run_state"]) == (name, "active")
+            if name == "PART.npg":
+                assert (await client.delete(f"/programs/{name}")).status_code == 409
+            assert await command("reset") == 200
+            machine.served.advance(20)
+        assert (await client.delete("/programs/PART.npg")).status_code == 204
+        assert await command("select_program", program="PART.npg") == 404
+
+    visit("bosch", Machinery("m", memory=tmp_path), ask)
+
+
 def test_tasks_of_a_board_are_loaded_started_and_stopped() -> None:
     async def ask(client: Any, machine: ServedMachine) -> None:
         empty = (await client.get("/tasks")).json()

@@ -213,7 +213,7 @@ def test_a_feed_hold_is_good_only_where_a_program_is_held() -> None:
             machine=machine, fixed=fixed, refresh=refresh, at=lambda *_: At(look(), fixed)
         )
         bound: Any = SimpleNamespace(member=member, node=node, item=SimpleNamespace(channel=0, about=""))
-        writes = Writes({node: None}, {}, Log())  # type: ignore[arg-type]
+        writes = Writes({node: None}, {}, Log())
         writes.add(publisher, bound)
 
         async def write(on: bool, status: ua.StatusCode = good) -> tuple[int, str]:

@@ -37,8 +37,9 @@ class FanucPrograms(MemoryPrograms):
     def delete(self, name: str) -> None:
         """Delete a program that is neither protected nor selected."""
         self._check_protection(name)
-        selected = self._mate.programs.selected
-        if selected and name == f"O{selected:04d}":
+        programs = self._mate.programs
+        is_selected = programs.selected and name == f"O{programs.selected:04d}"
+        if is_selected and name not in programs.memory.running:  # whose refusal says more
             raise ControlError(Refusal.IN_USE, f"program '{name}' is selected", hint="Select another one.")
         super().delete(name)
 
