@@ -7,6 +7,7 @@ from typing import Any
 
 import pytest
 
+from polycnc.controllers.fanuc import PowerMate
 from polycnc.servers.focas import FaultKind, PresentFaults
 from polycnc.servers.machines import ServedMachine
 from polycnc.servers.process import Machinery
@@ -133,6 +134,7 @@ def test_a_scenario_that_is_begun_later_acts_on_the_connections_of_focas() -> No
         await client.put("/scenario", content=FAR)
         await step(client, 10)
         assert faults.has(FaultKind.DROP)
+        assert isinstance(machine.device, PowerMate)
         assert faults.request(machine.device).kind is FaultKind.DROP
         await client.post("/scenario", json={"do": "stop"})
         assert (faults.has(FaultKind.DROP), machine.is_usual, told) == (False, True, [True, False])

@@ -6,7 +6,7 @@ import { Link } from "/link.js";
 import { Manual } from "/manual.js";
 import { Mdi } from "/mdi.js";
 import { Path } from "/path.js";
-import { Program } from "/program.js";
+import { OVER, Program } from "/program.js";
 import { Tabs } from "/tabs.js";
 import { Words } from "/words.js";
 import { follow, shortcutList } from "/shortcuts.js";
@@ -48,7 +48,7 @@ link.addEventListener("status", ({ detail: status }) => {
   $("run").dataset.state = channel.run_state;
   put($("run"), channel.run_state.replaceAll("_", " "));
   axes.show(status.axes);
-  path.at(status.axes, channel.block?.program === parts.program.name ? channel.block.line : 0, ["active", "hold", "stopped"].includes(channel.run_state));
+  path.at(status.axes, channel.block?.program === parts.program.name ? channel.block.line : 0, !OVER.includes(channel.run_state));
   charts.add(status, channel.feed);
   notices("alarms", status.alarms);
   notices("messages", status.messages);
