@@ -77,6 +77,10 @@ def test_statements_of_cpl_are_checked_with_the_programs_of_the_control(tmp_path
         assert (await client.post("/check", content=good)).json() == []
         found = (await client.post("/check", content="10 A%=3\n20 B%=A%*\n30 CALL none.npg\nM30\n")).json()
         assert {2, 3} <= {each["line"] for each in found}, found
+        assert (await client.post("/check", content="N1 G1 X3 F200\nN2 G2 X9 Y3 I2\nM30\n")).json()[0][
+            "line"
+        ] == 2
+        assert (await client.post("/check", content="N1 G1 X3 F200\nM30\n")).json() == []
 
     visit("bosch", Machinery("m", memory=root), ask)
 
@@ -112,12 +116,12 @@ def test_a_wrong_scenario_is_refused_with_its_place_and_the_one_before_goes_on()
         await client.put("/scenario", content=DAY)
         for text, place in ((DAY.replace("for_s", "for"), ":6:"), ("[[step]]\nname = \n", ":2:")):
             answer = await client.put("/scenario", content=text)
-            assert answer.status_code == 422
+            assert answer.status_code == 409
             assert place in answer.json()["errors"][0]
         wrong = await client.put(
             "/scenario", content=FAR.replace("drop", "power_cut").replace("for_s = 3.0\n", "")
         )
-        assert wrong.status_code == 422
+        assert wrong.status_code == 409
         shown = await step(client, 260)
         assert (shown["source"], shown["running"], shown["steps"][0]["done"]) == (DAY, True, 1)
 
