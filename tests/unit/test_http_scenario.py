@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import asyncio
 from pathlib import Path
 from typing import Any
 
 import pytest
 
 from polycnc.controllers.fanuc import PowerMate
-from polycnc.servers.focas import FaultKind, PresentFaults
+from polycnc.servers.focas import FaultKind, FocasServer, PresentFaults, load_profile
 from polycnc.servers.machines import ServedMachine
 from polycnc.servers.process import Machinery
 from support.http_app import visit
@@ -142,5 +143,37 @@ def test_a_scenario_that_is_begun_later_acts_on_the_connections_of_focas() -> No
         assert faults.request(machine.device).kind is FaultKind.DROP
         await client.post("/scenario", json={"do": "stop"})
         assert (faults.has(FaultKind.DROP), machine.is_usual, told) == (False, True, [True, False])
+
+    visit("fanuc", FANUC, ask)
+
+
+def test_a_door_that_listens_follows_a_scenario_that_is_begun_later() -> None:
+    async def ask(client: Any, machine: ServedMachine) -> None:
+        door = FocasServer.of(machine, load_profile("31i"), address="127.0.0.1", port=0)
+        await door.start()
+
+        async def comes(wanted: bool) -> None:
+            for _ in range(1000):
+                try:
+                    _, line = await asyncio.open_connection("127.0.0.1", door.port)
+                except OSError:
+                    listens = False
+                else:
+                    listens = True
+                    line.close()
+                if listens is wanted:
+                    return
+                await asyncio.sleep(0.01)
+            raise AssertionError(f"it does not come to {wanted}")
+
+        try:
+            await comes(True)
+            await client.put("/scenario", content=FAR.replace("drop", "unreachable"))
+            await step(client, 10)
+            await comes(False)
+            await client.post("/scenario", json={"do": "stop"})
+            await comes(True)
+        finally:
+            await door.close()
 
     visit("fanuc", FANUC, ask)
