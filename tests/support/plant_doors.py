@@ -149,7 +149,7 @@ _SHOWN = """() => {
         work: ["X", "Y", "Z"].map((axis) => Number(text(`${axis}-work`))),
         feed: text("figure2"),
         override: text("override-feed-is"),
-        alarms: [...document.getElementById("alarms").children].map((each) => each.textContent),
+        alarms: [...document.getElementById("alarms").children].map((each) => each.firstChild.textContent),
         program: text("name"),
         line: lines.findIndex((each) => each.hasAttribute("aria-current")) + 1,
         stopped: document.getElementById("stop").getAttribute("aria-pressed") === "true",

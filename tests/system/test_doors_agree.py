@@ -213,7 +213,10 @@ def page_of(status: dict[str, Any]) -> dict[str, Any]:
     """Return what the page shall show of a status."""
     channel = status["channels"][0]
     block = channel["block"]
-    own = block is not None and block["program"] == channel["program"]
+    over = channel["run_state"] in ("ready", "reset", "completed")
+    text = channel["program"] if over or block is None else block["program"]  # whose lines are shown
+    own = block is not None and block["program"] == text != "MDI"
+    calls = [f"{each['program']}:{each['line']}" for each in (block["stack"] if block else ())]
     axes = [status["axes"][name] for name in "XYZ"]
     return {
         "mode": status["mode"],
@@ -225,7 +228,9 @@ def page_of(status: dict[str, Any]) -> dict[str, Any]:
             f"{each['number']} {each['text']}" if each["number"] >= 0 else each["text"]
             for each in status["alarms"]
         ],
-        "program": " › ".join([channel["program"] or "No program selected", *channel["stack"][1:]]),
+        "program": " › ".join(
+            [*calls, block["program"] if block else channel["program"] or "No program selected"]
+        ),
         "line": block["line"] if own else 0,
         "stopped": status["emergency"] == "on",
         "lost": False,

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import asyncio
 from pathlib import Path
 from typing import Any
 
 import pytest
 
-from polycnc.servers.focas import FaultKind, PresentFaults
+from polycnc.controllers.fanuc import PowerMate
+from polycnc.servers.focas import FaultKind, FocasServer, PresentFaults, load_profile
 from polycnc.servers.machines import ServedMachine
 from polycnc.servers.process import Machinery
 from support.http_app import visit
@@ -76,6 +78,10 @@ def test_statements_of_cpl_are_checked_with_the_programs_of_the_control(tmp_path
         assert (await client.post("/check", content=good)).json() == []
         found = (await client.post("/check", content="10 A%=3\n20 B%=A%*\n30 CALL none.npg\nM30\n")).json()
         assert {2, 3} <= {each["line"] for each in found}, found
+        assert (await client.post("/check", content="N1 G1 X3 F200\nN2 G2 X9 Y3 I2\nM30\n")).json()[0][
+            "line"
+        ] == 2
+        assert (await client.post("/check", content="N1 G1 X3 F200\nM30\n")).json() == []
 
     visit("bosch", Machinery("m", memory=root), ask)
 
@@ -111,12 +117,12 @@ def test_a_wrong_scenario_is_refused_with_its_place_and_the_one_before_goes_on()
         await client.put("/scenario", content=DAY)
         for text, place in ((DAY.replace("for_s", "for"), ":6:"), ("[[step]]\nname = \n", ":2:")):
             answer = await client.put("/scenario", content=text)
-            assert answer.status_code == 422
+            assert answer.status_code == 409
             assert place in answer.json()["errors"][0]
         wrong = await client.put(
             "/scenario", content=FAR.replace("drop", "power_cut").replace("for_s = 3.0\n", "")
         )
-        assert wrong.status_code == 422
+        assert wrong.status_code == 409
         shown = await step(client, 260)
         assert (shown["source"], shown["running"], shown["steps"][0]["done"]) == (DAY, True, 1)
 
@@ -133,8 +139,41 @@ def test_a_scenario_that_is_begun_later_acts_on_the_connections_of_focas() -> No
         await client.put("/scenario", content=FAR)
         await step(client, 10)
         assert faults.has(FaultKind.DROP)
+        assert isinstance(machine.device, PowerMate)
         assert faults.request(machine.device).kind is FaultKind.DROP
         await client.post("/scenario", json={"do": "stop"})
         assert (faults.has(FaultKind.DROP), machine.is_usual, told) == (False, True, [True, False])
+
+    visit("fanuc", FANUC, ask)
+
+
+def test_a_door_that_listens_follows_a_scenario_that_is_begun_later() -> None:
+    async def ask(client: Any, machine: ServedMachine) -> None:
+        door = FocasServer.of(machine, load_profile("31i"), address="127.0.0.1", port=0)
+        await door.start()
+
+        async def comes(wanted: bool) -> None:
+            for _ in range(1000):
+                try:
+                    _, line = await asyncio.open_connection("127.0.0.1", door.port)
+                except OSError:
+                    listens = False
+                else:
+                    listens = True
+                    line.close()
+                if listens is wanted:
+                    return
+                await asyncio.sleep(0.01)
+            raise AssertionError(f"it does not come to {wanted}")
+
+        try:
+            await comes(True)
+            await client.put("/scenario", content=FAR.replace("drop", "unreachable"))
+            await step(client, 10)
+            await comes(False)
+            await client.post("/scenario", json={"do": "stop"})
+            await comes(True)
+        finally:
+            await door.close()
 
     visit("fanuc", FANUC, ask)

@@ -33,7 +33,7 @@ class Copies:
 
     config: MachineConfig
     dialect: Dialect
-    language: Language
+    language: Language | None
     texts: dict[int, ProgramText]
 
 

@@ -44,8 +44,9 @@ def of_error(error: PolycncError) -> Response:
     if isinstance(error, ControlError):
         status = 422 if isinstance(error, NotMeantError) else _STATUS.get(error.reason, 409)
         return problem(
-            status, error.what, error.hint, number=NUMBERS[error.reason], reason=error.reason.value
-        )
+            status, error.what, error.hint, number=NUMBERS[error.reason], reason=error.reason.value,
+            errors=_places(error.__cause__ or error),
+        )  # fmt: skip
     if isinstance(error, SnapshotError):
         reason = Refusal.SNAPSHOT
         return problem(409, error.what, error.hint, number=NUMBERS[reason], reason=reason.value)
@@ -54,10 +55,10 @@ def of_error(error: PolycncError) -> Response:
     return problem(422, error.what, error.hint, errors=_places(error))
 
 
-def _places(error: PolycncError) -> list[str]:
+def _places(error: BaseException) -> list[str]:
     """Return what is wrong with a file, a line for each thing with its place."""
-    parts = getattr(error, "parts", ()) or (error,)
-    placed = [(getattr(each, "position", None), each.what) for each in parts]
+    parts: tuple[BaseException, ...] = getattr(error, "parts", ()) or (error,)
+    placed = [(getattr(each, "position", None), getattr(each, "what", "")) for each in parts]
     return [f"{place}: {what}" for place, what in placed if place is not None]
 
 

@@ -8,6 +8,7 @@ from fastapi import APIRouter, Request
 from pydantic import BaseModel, ConfigDict
 
 from polycnc.cnc import ControlError, Refusal
+from polycnc.errors import UsageError
 from polycnc.servers.commands import NotMeantError
 from polycnc.servers.http._body import checked, json_object
 from polycnc.servers.http._found import ONE, Found, body
@@ -81,13 +82,17 @@ class ScenarioRoutes:
         if len(content) > MOST_SCENARIO_BYTES:
             raise TooLargeError
         try:
-            script = read_script(content.decode("utf-8-sig"))
+            source = content.decode("utf-8-sig")
         except UnicodeDecodeError:
             raise NotMeantError("the scenario is not UTF-8", "Send text.") from None
 
         def begun() -> ScenarioShown:
             before = self._present(found)
-            self._begin(found, Story(script, found, self._found.log), before)
+            try:
+                story = Story(read_script(source), found, self._found.log)
+            except UsageError as error:
+                raise ControlError(Refusal.DATA, error.what, hint=error.hint) from error
+            self._begin(found, story, before)
             return self._shown(found)
 
         return await found.ask(begun)

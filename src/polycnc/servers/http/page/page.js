@@ -6,7 +6,7 @@ import { Link } from "/link.js";
 import { Manual } from "/manual.js";
 import { Mdi } from "/mdi.js";
 import { Path } from "/path.js";
-import { Program } from "/program.js";
+import { OVER, Program } from "/program.js";
 import { Tabs } from "/tabs.js";
 import { Words } from "/words.js";
 import { follow, shortcutList } from "/shortcuts.js";
@@ -14,7 +14,7 @@ import { THEMES, theme, wear } from "/theme.js";
 import "/axes.js";
 
 const SWITCHES = ["single_block", "dry_run", "optional_stop", "block_delete", "machine_lock"];
-const RATES = [0, 0.1, 0.5, 1, 2, 5, 10, 50], REDRAW_MS = 300, MOST_JUMP = 60_000;
+const RATES = [0, 0.1, 0.5, 1, 2, 5, 10, 50], REDRAW_MS = 300, AGAIN_MS = 1000, MOST_JUMP = 60_000;
 
 const link = new Link(), path = new Path($("path"), $("views")), charts = new Charts($("charts")), axes = document.querySelector("cnc-axes"), runPage = $("page-run");
 let parts = null; // of the machine that is looked at: what is built for it
@@ -48,7 +48,7 @@ link.addEventListener("status", ({ detail: status }) => {
   $("run").dataset.state = channel.run_state;
   put($("run"), channel.run_state.replaceAll("_", " "));
   axes.show(status.axes);
-  path.at(status.axes, channel.block?.program === parts.program.name ? channel.block.line : 0, ["active", "hold", "stopped"].includes(channel.run_state));
+  path.at(status.axes, channel.block?.program === parts.program.name ? channel.block.line : 0, !OVER.includes(channel.run_state));
   charts.add(status, channel.feed);
   notices("alarms", status.alarms);
   notices("messages", status.messages);
@@ -145,6 +145,7 @@ async function choose(machine) {
   path.clear();
   charts.clear();
   link.status = await link.json("status");
+  if (!link.status) { setTimeout(() => { if (!parts || link.name === machine.name) choose(machine); }, AGAIN_MS); return; }
   build();
   link.show(link.status);
   link.connect();

@@ -3,6 +3,7 @@ import { $, button, make, put, say } from "/dom.js";
 import { TEXTS } from "/texts.js";
 
 const MOST_LINES = 2000, NEAR_PX = 400; // lines that are in the page at once; more come when they are scrolled to
+export const OVER = ["ready", "reset", "completed"]; // states in which nothing is executed and nothing goes on
 const minutes = (s) => `${Math.floor(s / 60)}:${String(Math.floor(s % 60)).padStart(2, "0")}`;
 
 export class Program {
@@ -29,7 +30,7 @@ export class Program {
     put($("name"), [...calls, block?.program ?? channel.program ?? TEXTS.no_program].join(" › "));
     put($("progress"), [block ? `${TEXTS.line} ${block.line} / ${block.lines}` : "", block && !this.lines.length ? block.text : "", timers?.cycle ? `${TEXTS.cycle_time} ${minutes(timers.cycle)}` : "",
       left_s > 0 ? `${TEXTS.left} ${minutes(left_s)}` : "", parts?.made ? `${TEXTS.parts_made} ${parts.made}` : ""].filter(Boolean).join(" · "));
-    const wanted = block && ["active", "hold", "stopped"].includes(channel.run_state) ? block.program : this.selected;
+    const wanted = block && !OVER.includes(channel.run_state) ? block.program : this.selected;
     if (wanted !== this.name) this.load(wanted);
     this.run(block && block.program === this.name ? block.line : 0);
     for (const step of ["over", "into", "out"]) $(`step_${step}`).disabled = !["auto", "mdi"].includes(status.mode);

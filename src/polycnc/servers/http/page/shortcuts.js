@@ -38,9 +38,8 @@ export function follow(event) {
 export function shortcutList() {
   const line = (keys, text) => make("tr", {}, make("th", { scope: "row" }, make("kbd", {}, keys)), make("td", {}, text));
   const dialog = make("dialog", { id: "shortcuts", "aria-label": TEXTS.shortcuts },
-    make("h2", {}, TEXTS.shortcuts),
-    make("table", {}, ...SHORTCUTS.map(({ keys, press, focus }) => line(keys, TEXTS.does[press ?? focus])), ...BY_HAND.map((name) => line(...TEXTS.by_hand[name]))),
-    make("form", { method: "dialog" }, make("button", { autofocus: "" }, TEXTS.close)));
+    make("form", { method: "dialog", class: "row" }, make("h2", {}, TEXTS.shortcuts), make("button", { autofocus: "" }, TEXTS.close)),
+    make("table", {}, ...SHORTCUTS.map(({ keys, press, focus }) => line(keys, TEXTS.does[press ?? focus])), ...BY_HAND.map((name) => line(...TEXTS.by_hand[name]))));
   dialog.addEventListener("keydown", (event) => { if (event.key === "Escape") dialog.close(); });
   return dialog;
 }
