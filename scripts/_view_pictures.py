@@ -20,6 +20,21 @@ PICTURES = (  # image, program, what is given with it, moment, what is chosen
     ("view-stock.png", "bracket.nc", ("--stock", "auto"), 0.86, {"#colour": "tool"}),
     ("view-section.png", "bracket.nc", ("--stock", "auto"), 1.0, {"#colour": "tool", "#section": "1"}),
     ("view-lathe.png", "lathe_shaft.nc", ("-m", "lathe2"), 0.75, {"#colour": "tool"}),
+    (
+        "view-lathe-stock.png",
+        "lathe_shaft.nc",
+        ("-m", "lathe2", "--stock", "cylinder=30,-75,0"),
+        0.8,
+        {"#colour": "tool", "button": "3-D"},
+    ),
+    (
+        "view-five-axes-stock.png",
+        "five_axis.nc",
+        ("-m", "mill5", "--stock", "cylinder=82,0,26"),
+        1.0,
+        {"#colour": "tool"},
+    ),
+    ("view-cut-width.png", "bracket.nc", ("--stock", "auto"), 1.0, {"#colour": "radial"}),
     ("view-five-axes.png", "five_axis.nc", ("-m", "mill5"), 0.93, {"#frame": "machine"}),
 )
 MOVE = "s => { const e = document.getElementById('slider'); e.value = s * e.max; e.oninput(); }"
@@ -40,7 +55,10 @@ def main() -> None:
             page.wait_for_selector("html[data-ready=yes]", timeout=120_000)
             page.evaluate(MOVE, share)
             for which, value in chosen.items():
-                page.locator(which).select_option(value)
+                if which == "button":
+                    page.get_by_role("button", name=value, exact=True).click()
+                else:
+                    page.locator(which).select_option(value)
             page.wait_for_timeout(500)
             page.screenshot(path=IMAGES / image)
             page.close()

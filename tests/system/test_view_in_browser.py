@@ -160,7 +160,7 @@ def _saves_what_is_left(view: Opened, folder: Path, part: str, machine: str, sto
     surface = read_stl(folder / "body.stl")
     check_closed(folder / "body.stl", surface)
     whole = result.machined.stock
-    assert surface.volume_mm3 == pytest.approx(whole.volume_mm3, rel=0.01)
+    assert surface.volume_mm3 == pytest.approx(whole.volume_mm3, rel=0.02)
     assert surface.vertices.min(axis=0) == pytest.approx(whole.mesh().vertices.min(axis=0), abs=0.5)
     at = [22.0, 0.0, 0.0] if machine == "mill5" else [-17.0, 0.0, 0.0]  # below it is what a cut has left
     met = view.page.evaluate(

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping
+from dataclasses import replace
 
 from polycnc.errors import UsageError
 from polycnc.machine import MachineConfig, ToolConfig
@@ -36,8 +37,10 @@ def turning_tools_of(config: MachineConfig, texts: Mapping[str, ProgramText]) ->
                 tools[number] = insert
     for number, at in config.tools.items():
         try:
-            if (insert := _of_table(at)) is not None:
-                tools[number] = insert
+            insert = _of_table(at)
+            known = tools.get(number) if insert is None else insert
+            if isinstance(known, Insert):
+                tools[number] = replace(known, left_hand=at.left_hand)
         except UsageError as error:
             raise UsageError(f"tool {number} of '{config.name}': {error.what}", hint=error.hint) from None
     return tools

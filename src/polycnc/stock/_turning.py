@@ -69,9 +69,10 @@ class TurningCutting:
         self.tally.count(ways, figures, insert)
         self._note(ContactKind.HOLDER, ways, self._held(insert, places), least)
         if not ways.rapid:
-            at_rest = ways.rows.turns[ways.ends] == 0.0
-            figures[~at_rest, DEPTH_MM] = 0.0
-            self._note(ContactKind.SPINDLE, ways, figures, least)
+            turns = ways.rows.turns[ways.ends]
+            self._note(ContactKind.SPINDLE, ways, figures, least, turns == 0.0)
+            if insert.left_hand:
+                self._note(ContactKind.DIRECTION, ways, figures, least, turns > 0.0)
             moves = np.any(ways.places[1:] != ways.places[:-1], axis=1) & (figures[:, VOLUME_MM3] <= 0.0)
             self.tally.idle_s += float(ways.duration_s[moves].sum())
 
@@ -153,8 +154,10 @@ class TurningCutting:
         self.tally.count(ways, figures, tool)
         self._note(ContactKind.FLUTES, ways, holes, tool.flute_mm)
         if not ways.rapid:
-            figures[ways.rows.turns[ways.ends] != 0.0, DEPTH_MM] = 0.0
-            self._note(ContactKind.SPINDLE, ways, figures, least)
+            turns = ways.rows.turns[ways.ends]
+            self._note(ContactKind.SPINDLE, ways, figures, least, turns == 0.0)
+            wrong = turns > 0.0 if tool.left_hand else turns < 0.0
+            self._note(ContactKind.DIRECTION, ways, figures, least, wrong)
 
     @staticmethod
     def _on_axis(places: Floats) -> Iterator[tuple[Floats, Floats]]:
@@ -164,8 +167,16 @@ class TurningCutting:
             on_axis = max(abs(begin[0]), abs(end[0])) <= _ON_AXIS_MM
             yield (begin, end) if on_axis else (away, away)
 
-    def _note(self, kind: ContactKind, ways: Ways, figures: Floats, least_mm: float) -> None:
-        for way in np.flatnonzero(figures[:, DEPTH_MM] > least_mm).tolist():
+    def _note(
+        self,
+        kind: ContactKind,
+        ways: Ways,
+        figures: Floats,
+        least_mm: float,
+        only: npt.NDArray[np.bool_] | None = None,
+    ) -> None:
+        wrong = figures[:, DEPTH_MM] > least_mm
+        for way in np.flatnonzero(wrong if only is None else wrong & only).tolist():
             row, found = int(ways.ends[way]), figures[way]
             place = float(found[AT_X]), 0.0, float(found[AT_Y])
             t_s, block = float(ways.rows.t_s[row]), int(ways.rows.block[row])

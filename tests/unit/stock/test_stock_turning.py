@@ -198,6 +198,28 @@ FAULTS: dict[str, tuple[str, str, list[tuple[ContactKind, int]]]] = {
 }
 
 
+@pytest.mark.parametrize(
+    ("turns", "left_hand", "wrong"),
+    [("M3", False, []), ("M4", False, [4]), ("M3", True, [3, 4]), ("M4", True, [])],
+)
+def test_what_turns_the_wrong_way_for_a_tool(turns: str, left_hand: bool, wrong: list[int]) -> None:
+    """A drill says its way by itself, an insert only where the machine file says that it is left-handed."""
+    config = load_machine("lathe2").model_copy(
+        update={"tools": {n: ToolConfig(left_hand=left_hand) for n in (1, 5)}}
+    )
+    text = (
+        f"(T1 CNMG120408) (T5 drill 8 mm)\nT0101\nG98 G97 S800 {turns}G0 X26 Z2\nG1 X26 Z-9 F200\n"
+        "G0 X60 Z50\nT0505\nG0 X0 Z3\nG1 Z-9 F100\nG0 Z9\nM30\n"
+    )
+    found = runner.run(
+        text, config, "fanuc-lathe", stock="cylinder=30,-60,0", resolution_mm=0.1, check=False
+    ).machined
+    assert found is not None
+    assert [(each.kind, each.line) for each in found.collisions] == [
+        (ContactKind.DIRECTION, {3: 4, 4: 8}[each]) for each in wrong
+    ]
+
+
 @pytest.mark.parametrize("fault", FAULTS)
 def test_a_planted_fault_is_found_at_its_block(fault: str) -> None:
     right, wrong, said = FAULTS[fault]
