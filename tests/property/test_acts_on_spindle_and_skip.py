@@ -58,7 +58,7 @@ def program(rng: np.random.Generator) -> str:
             ["G95", f"G1 X{u(-4, 12):.2f} Z{u(-4, 2):.2f} F{u(0.5, 3.0):.2f}", "G94 F1500"],
             [f"G4 P{u(5, 60):.0f}"],
             [f"G2 X{u(4, 9):.3f} Y{u(1, 9):.3f} R40. F{u(900, 6000):.0f}"],
-            ["G91", *[f"X{u(0.01, 0.4):.3f} Y{u(-0.2, 0.2):.3f}" for _ in range(6)], "G90"],
+            ["G91 G1 F3000", *[f"X{u(0.01, 0.4):.3f} Y{u(-0.2, 0.2):.3f}" for _ in range(6)], "G90"],
         ][int(rng.integers(8))]
     return "\n".join([*lines, "M30", ""])
 
