@@ -444,6 +444,7 @@ def test_lengths_and_axes_of_the_dynamic_data() -> None:
 
 
 ALARMS = {0: 100, 1: 0, 2: 101, 3: 85, 4: 506, 5: 700, 6: 417, 8: 300, 10: 5010, 15: 1003}
+LAST = {4: 599, 5: 749, 6: 499, 8: 399, 10: 5999, 15: 1999}
 
 
 @pytest.mark.parametrize(
@@ -466,6 +467,9 @@ def test_bits_of_the_alarm_status(bit: int) -> None:
         )  # these two stay until the power is switched off
         control.power_cycle()
         assert status() == 0
+        if bit in LAST:
+            control.raise_alarm(LAST[bit], "TEST", axis=2 if bit in (4, 6) else None)
+            assert status() == 1 << bit
     else:
         for number in (*range(300), *range(301, 800, 7), *range(1000, 6000, 97)):
             control.raise_alarm(number, "TEST")

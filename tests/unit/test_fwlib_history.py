@@ -350,6 +350,7 @@ def test_one_history_is_cleared_alone() -> None:
 @pytest.mark.covers("fanuc.cnc_rdhissgnl", *(f"fanuc.IODBSIG.sig_name.{number}" for number in (0, 1, 2, 4)))
 @pytest.mark.covers("fanuc.cnc_wrhissgnl")
 @pytest.mark.covers(
+    "fanuc.IODBSIG",
     "fanuc.IODBSIG.type",
     "fanuc.IODBSIG.data.ent_no",
     "fanuc.IODBSIG.data.sig_name",

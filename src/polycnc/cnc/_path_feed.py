@@ -103,7 +103,8 @@ class PathFeed:
         self._find_stop()
         self.prepare()
         row = self.row
-        if self.channel.starved and row["state"] == READY and row["head"] >= row["prepared"] < row["tail"]:
+        last = self.channel.starved or self._ahead == 0
+        if last and row["state"] == READY and row["head"] >= row["prepared"] < row["tail"]:
             row["closed"] = 1  # the path rests before a line that was held back until the next one is known
             self.prepare()
         if self.channel.done or self.channel.waits or self._met_at is not None:
