@@ -128,17 +128,18 @@ def operate_programs(page: Any, served: Any) -> None:
 
 def operate_the_scenario(page: Any, served: Any) -> None:
     """Be refused a scenario with its place, follow one, and end it."""
+    before = served.status()["overrides"]["feed"]
     page.click("#tab-scenario")
     page.fill("#scenario-text", _SCENARIO.replace("at_s", "at"))
     page.click("#scenario-put")
     page.wait_for_selector("#page-scenario cnc-editor.open b.wrong:has-text('5')")
-    assert served.status()["overrides"]["feed"] == 1.0
+    assert served.status()["overrides"]["feed"] == before
     page.fill("#scenario-text", _SCENARIO)
     page.click("#scenario-put")
     page.wait_for_selector("#page-scenario tr:has(th:has-text('slow')) td:has-text('on')")
     until(page, lambda: served.status()["overrides"]["feed"] == 0.35)
     page.click("#scenario-stop")
-    until(page, lambda: served.status()["overrides"]["feed"] == 1.0)
+    until(page, lambda: served.status()["overrides"]["feed"] == before)
     page.wait_for_selector("#scenario-start:enabled")
 
 

@@ -373,6 +373,7 @@ def test_the_space_holds_128_events_and_0_removes_them() -> None:
 @pytest.mark.covers("imc.param.events", "imc.param.ticks")
 def test_a_destination_of_0_stores_nothing() -> None:
     card = ready_card()
+    card.advance(1)
     before = card.state.memory.copy()
     install(card, event("ADD32i", first=A32, constant=77), event("SET48", constant=-1))
     card.advance(5)
@@ -389,6 +390,7 @@ def test_commands_and_types_are_numbered_in_the_manuals_order() -> None:
 @pytest.mark.covers("imc.param.events")
 def test_an_event_on_an_axis_that_is_not_there_does_nothing() -> None:
     card = ready_card(number_of_axes=2)
+    card.advance(1)
     before = card.state.memory.copy()
     bad = Event(EventCommand.CMD_ADD32i, EventType.IMC_Allways, 225, 7, constant=1, target=225, target_axis=9)
     assert card.push(IFIFO, InstallEvents((bad,)))

@@ -7,7 +7,7 @@ checkout, a reinstallation and a copied cache compile nothing, nor does a change
 from collections.abc import Callable, Iterable
 
 from polycnc.jit._detached import Detached, Ready, call_at, detached
-from polycnc.jit._entry import allocating, compiled, entry, versions
+from polycnc.jit._entry import allocating, apart, compiled, entry, versions
 from polycnc.jit._files import CACHE_FOLDER, FILES, SHIPPED_FOLDER, Files
 from polycnc.jit._marks import OPEN_INTERNALS
 from polycnc.jit._notice import COMPILING
@@ -26,6 +26,7 @@ __all__ = [
     "NotKnownError",
     "Ready",
     "allocating",
+    "apart",
     "call_at",
     "compile_at_once",
     "compile_entries",

@@ -133,11 +133,11 @@ def _internal(mark: Mark) -> Any:
     """Return the dispatcher of an internal function, in a namespace where those that it calls have theirs."""
     if mark.dispatcher is None:
         # A state is hundreds of words, which a real call puts on the stack one by one. That costs more than most
-        # functions do, so they all become part of their callers. It changes no result.
+        # functions do, so they become part of their callers, but for those that are marked. It changes no result.
         options = {
             "no_cpython_wrapper": True,
             "no_cfunc_wrapper": True,
-            "forceinline": True,
+            "forceinline": not mark.apart,
             **_INTERNAL,
         }
         written: Any = mark.py_func

@@ -139,6 +139,13 @@ def allocating(function: Callable[P, R]) -> Callable[P, R]:
     return function if DISABLED else cast("Callable[P, R]", Internal(function, counted=True))
 
 
+def apart(function: Callable[P, R]) -> Callable[P, R]:
+    """Keep a long compiled function that is called from many places from becoming part of each of them."""
+    if isinstance(function, Mark):
+        function.inner.apart = True
+    return function
+
+
 @overload
 def entry(function: Callable[P, R]) -> Callable[P, R]: ...
 @overload

@@ -24,6 +24,7 @@ class Mark:
         self.py_func: Any = function
         functools.update_wrapper(cast("Any", self), self.py_func)
         self.counted = counted  # whether it may allocate arrays, which takes numba's counts of references
+        self.apart = False  # whether it stays a function of its own in compiled code
         self.dispatcher: Any = None
 
     @property

@@ -32,7 +32,7 @@ from polycnc.kernel._blend_speed import (
 )
 from polycnc.kernel._circle3d import circle3d_point, circle3d_setup
 from polycnc.kernel._corner_rules import BY_SHARE
-from polycnc.kernel._jit import compiled
+from polycnc.kernel._jit import apart, compiled
 from polycnc.kernel._path import Paths, slot
 from polycnc.kernel._segments import (
     ARC,
@@ -47,6 +47,7 @@ from polycnc.kernel._segments import (
 )
 
 
+@apart
 @compiled
 def blend_corner(
     seg: Segments, paths: Paths, g: int, limits: AxisLimits, end: Floats, speed_mm_s: float, tag: int

@@ -26,7 +26,7 @@ from polycnc.kernel._blend_speed import (
     saves_time_in_plane,
 )
 from polycnc.kernel._corner_rules import BY_SHARE
-from polycnc.kernel._jit import compiled
+from polycnc.kernel._jit import apart, compiled
 from polycnc.kernel._path import Paths, slot
 from polycnc.kernel._segments import (
     ARC,
@@ -94,6 +94,7 @@ def round_to_line(
     return _round(seg, paths, g, limits, (p, q), after, 0.0, length, speed_mm_s, tag) > 0.0
 
 
+@apart
 @compiled
 def round_to_arc(
     seg: Segments,

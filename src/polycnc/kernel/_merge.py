@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from polycnc.kernel._axis_limits import AxisLimits
 from polycnc.kernel._blend import blend_corner, counting_axes
-from polycnc.kernel._jit import compiled, entry
+from polycnc.kernel._jit import apart, compiled, entry
 from polycnc.kernel._lines import add_line, end_thread
 from polycnc.kernel._overlap import overlap_corner
 from polycnc.kernel._path import BLEND_COLUMNS, MOST_MERGED, SCRATCH_POINTS, Paths, slot
@@ -95,6 +95,7 @@ def _within(paths: Paths, g: int, start: Floats, end: Floats, p: int, q: int, r:
     return True
 
 
+@apart
 @entry
 def close_line(seg: Segments, paths: Paths, g: int, limits: AxisLimits) -> None:
     """Let no more lines join the last line of path `g`, and round its corner with the line before."""

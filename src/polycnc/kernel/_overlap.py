@@ -28,7 +28,7 @@ from polycnc.kernel._curve_limits import (
     axis_use,
 )
 from polycnc.kernel._geometry import segment_point, segment_tangent
-from polycnc.kernel._jit import compiled
+from polycnc.kernel._jit import apart, compiled
 from polycnc.kernel._limits import feed_in_force, segment_limits
 from polycnc.kernel._path import SCRATCH_POINTS, Paths, slot
 from polycnc.kernel._segments import (
@@ -54,6 +54,7 @@ MOST_TRIES = 16
 LEAST_ASIDE = 1e-3  # sine of half the turn; smaller ones leave the speed free
 
 
+@apart
 @compiled
 def overlap_corner(seg: Segments, paths: Paths, g: int, limits: AxisLimits) -> None:
     """Let the last two segments of path `g` overlap if their corner may be left and is no corner for an arc.

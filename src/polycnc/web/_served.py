@@ -9,7 +9,16 @@ from polycnc.web._page import module_text
 from polycnc.web._vendor import BARE, VENDOR, folder, libraries
 
 _BARE_IMPORT = re.compile(rf"""\b(from|import)(\s*)(["'])({"|".join(BARE)})\3""")
-_MODULES = ("chart.js", "field.js", "format.js", "lines.js", "stage.js", "theme.js", "tool_shape.js")
+_MODULES = (
+    "body.js",
+    "chart.js",
+    "field.js",
+    "format.js",
+    "lines.js",
+    "stage.js",
+    "theme.js",
+    "tool_shape.js",
+)
 
 
 @cache

@@ -128,7 +128,7 @@ def test_the_bracket() -> None:
 
 def test_a_table_that_turns_is_refused() -> None:
     program = Path(__file__).resolve().parents[3] / "examples" / "five_axis.nc"
-    with pytest.raises(UsageError, match="turns the part or the tool"):
+    with pytest.raises(UsageError, match="where an axis turns"):
         runner.run(program, "mill5", stock="auto", check=False)
 
 
