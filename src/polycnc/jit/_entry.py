@@ -141,8 +141,9 @@ def allocating(function: Callable[P, R]) -> Callable[P, R]:
 
 def apart(function: Callable[P, R]) -> Callable[P, R]:
     """Keep a long compiled function that is called from many places from becoming part of each of them."""
-    if isinstance(function, Mark):
-        function.inner.apart = True
+    mark: object = function
+    if isinstance(mark, Mark):
+        mark.inner.apart = True
     return function
 
 

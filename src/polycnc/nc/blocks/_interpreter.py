@@ -9,6 +9,8 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import replace
+from typing import TypeVar
+from weakref import WeakMethod
 
 from polycnc.errors import ProgramError
 from polycnc.nc.blocks._block import BlockContext, ChannelRules
@@ -32,6 +34,8 @@ from polycnc.nc.text._program import ProgramText
 from polycnc.nc.text._scan import STATEMENT
 from polycnc.nc.text._scan_plain import Block
 
+F = TypeVar("F", bound=Callable[..., object])
+
 
 class Interpreter:
     """Execute blocks of one channel: change the state and give items to the queue.
@@ -54,7 +58,8 @@ class Interpreter:
         self.messages = messages
         self._queue = queue
         self._reference = reference
-        self._rules = ChannelRules(dialect, state, call_problem, self._run)
+        run = WeakMethod(self._run)  # the rules are the interpreter's own
+        self._rules = ChannelRules(dialect, state, call_problem, lambda block: _alive(run)(block))
         self._not_blocks = NotBlocks(dialect)
         self._after = state.copy()  # what the present block changes
         self._last_tag = 0
@@ -293,6 +298,12 @@ class Interpreter:
         """Go on without radius compensation, to look for errors after a path that cannot be followed."""
         self.state.compensation.reset()
         self.state.side = 0
+
+
+def _alive(method: WeakMethod[F]) -> F:
+    found = method()
+    assert found is not None
+    return found
 
 
 def _with_tip(state: ChannelState, item: QueueItem, pushed: Iterable[QueueItem]) -> Iterator[QueueItem]:

@@ -65,7 +65,6 @@ class Channel:
         options = options or ChannelOptions()
         self.dialect, self.machine, self.path = dialect, machine, path
         self.on_filled: Callable[[], None] | None = None  # looks at the queue before it is executed
-        self.messages = Messages(ahead=lambda: self.writer.put_count)
         self.suppressed = Suppressed()
         text_rules = dialect.text_rules()
         rules = scan_rules(text_rules)
@@ -81,15 +80,22 @@ class Channel:
             keeps_modal=keeps_modal,
         )
         self._prepared: Prepared = prepared
-        self.writer, self.records, self.state = prepared.writer, prepared.records, prepared.state
+        self.state = prepared.state
+        self.writer = writer = prepared.writer
+        self.records = records = prepared.records
+        # Nothing of a channel holds the whole of it: one that a program leaves behind goes at once, with its arrays.
+        self.messages = Messages(ahead=lambda: writer.put_count)
         self._errors = errors = Errors(self.messages, collects=options.collect_errors)
         self.errors = errors.all
         self._reader = reader = Reader(program.opening, text_rules, rules, skip_levels)
         sub_programs = SubPrograms(program, dialect, library)
         self._calls = calls = Calls(program, dialect, sub_programs, language, reader, errors)
         self._search = search = Search(calls, reader, language)
+        self._reference: Callable[[int, ModalSnapshot], int] = lambda line, modal: records.reference(
+            reader.place.text, calls.stack, modal, line
+        )
         self.interpreter = Interpreter(
-            dialect, self.state, self.messages, self.writer, calls.trouble, self._reference
+            dialect, self.state, self.messages, writer, calls.trouble, self._reference
         )
         self._preparation = Preparation(
             reader,
@@ -209,11 +215,6 @@ class Channel:
     def close(self) -> None:
         """Give up the program: what a language holds for it ends."""
         self._preparation.close()
-
-    def _reference(self, line: int, modal: ModalSnapshot) -> int:
-        """Return the reference of the block on `line` of the present program, which leaves this in force."""
-        text = self._reader.place.text
-        return self.records.reference(text, self._calls.stack, modal, line)
 
     # ------------------------------------------------------------------ beginning elsewhere
 
