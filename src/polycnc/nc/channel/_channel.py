@@ -14,6 +14,7 @@ from polycnc.errors import ProgramError, UsageError
 from polycnc.machine import Machine, MachineConfig
 from polycnc.nc.blocks._interpreter import Interpreter
 from polycnc.nc.blocks._messages import Messages
+from polycnc.nc.blocks._queue import QueueWriter
 from polycnc.nc.channel._calls import Calls
 from polycnc.nc.channel._channel_snapshot import ChannelSnapshot
 from polycnc.nc.channel._errors import Errors
@@ -28,7 +29,7 @@ from polycnc.nc.channel._turns import Turns
 from polycnc.nc.dialect._dialect import Dialect
 from polycnc.nc.modal._modal_snapshot import ModalSnapshot
 from polycnc.nc.modal._suppressed import Suppressed
-from polycnc.nc.records._block_records import Call
+from polycnc.nc.records._block_records import BlockRecords, Call
 from polycnc.nc.sources._block_source import Language
 from polycnc.nc.text._program import ProgramText
 from polycnc.nc.text._scan import scan_rules
@@ -44,6 +45,8 @@ class Channel:
     axes in this channel, those of others by `of_another_channel`. Refused blocks are in `errors`. Without `attaches`
     the channel is made to go back to a snapshot: only then it takes path and language over.
     """
+
+    _prepared: Prepared
 
     def __init__(
         self,
@@ -68,7 +71,7 @@ class Channel:
         self.suppressed = Suppressed()
         text_rules = dialect.text_rules()
         rules = scan_rules(text_rules)
-        prepared = Prepared(
+        prepared = self._prepared = Prepared(
             dialect,
             rules,
             machine,
@@ -79,23 +82,17 @@ class Channel:
             before=None if before is None else before._prepared,
             keeps_modal=keeps_modal,
         )
-        self._prepared: Prepared = prepared
-        self.state = prepared.state
-        self.writer = writer = prepared.writer
-        self.records = records = prepared.records
-        # Nothing of a channel holds the whole of it: one that a program leaves behind goes at once, with its arrays.
-        self.messages = Messages(ahead=lambda: writer.put_count)
+        self.writer, self.records, self.state = prepared.writer, prepared.records, prepared.state
+        self.messages = Messages(ahead=_put_count(prepared.writer))
         self._errors = errors = Errors(self.messages, collects=options.collect_errors)
         self.errors = errors.all
         self._reader = reader = Reader(program.opening, text_rules, rules, skip_levels)
         sub_programs = SubPrograms(program, dialect, library)
         self._calls = calls = Calls(program, dialect, sub_programs, language, reader, errors)
         self._search = search = Search(calls, reader, language)
-        self._reference: Callable[[int, ModalSnapshot], int] = lambda line, modal: records.reference(
-            reader.place.text, calls.stack, modal, line
-        )
+        self._reference = _reference(self.records, reader, calls)
         self.interpreter = Interpreter(
-            dialect, self.state, self.messages, writer, calls.trouble, self._reference
+            dialect, self.state, self.messages, self.writer, calls.trouble, self._reference
         )
         self._preparation = Preparation(
             reader,
@@ -331,3 +328,16 @@ class Channel:
         self.interpreter.restore(saved.interpreter)
         take_up()  # before anything is read: words may have variables for their numbers
         self._reader.jump(saved.place, saved.text_end)
+
+
+# Nothing of a channel holds the whole of it: one that a program leaves behind goes at once, with its large arrays.
+
+
+def _put_count(writer: QueueWriter) -> Callable[[], int]:
+    """Return what tells how many segments have been put."""
+    return lambda: writer.put_count
+
+
+def _reference(records: BlockRecords, reader: Reader, calls: Calls) -> Callable[[int, ModalSnapshot], int]:
+    """Return what gives the reference of the block on a line of the present program, which leaves this in force."""
+    return lambda line, modal: records.reference(reader.place.text, calls.stack, modal, line)
