@@ -53,6 +53,10 @@ OVER_INPUTS = {
     "program over machine": ("post", "p.cls", "-c", "din", "-m", "m.toml", "--verify", "-o", "m.toml"),
     "compiled over source": ("sap", "compile", "p.sap", "-o", "p.sap"),
     "compiled over a hard link": ("sap", "compile", "p.sap", "-o", "hard.CNC"),
+    "stock over stock": ("run", "p.nc", "--stock", "s.stl", "--save-stock", "./s.stl"),
+    "stock over stock turned over": ("run", "p.nc", "--stock", "x-turned=s.stl", "--save-stock", "s.stl"),
+    "stock over a machine's": ("run", "p.nc", "-m", "turned.toml", "--save-stock", "s.stl"),
+    "stock over a fixture": ("run", "p.nc", "--stock", "auto", "--fixture", "s.stl", "--save-stock", "s.stl"),
     "page over machine": ("view", "p.nc", "-m", "m.html", "-o", "m.html"),
 }
 
@@ -62,6 +66,8 @@ def test_no_output_goes_over_an_input(case: str, here: Path) -> None:
     Path("p.csv").write_text("G1 X3 F300\nM30\n")
     for name in ("m.csv", "m.toml", "m.html"):
         Path(name).write_text(polycnc("machine", "mill3", "--toml"))
+    Path("turned.toml").write_text(f'{Path("m.toml").read_text()}\n[stock]\nform = "Y-turned=s.stl"\n')
+    Path("s.stl").write_text("solid s\nendsolid s\n")
     Path("k.csv").write_text("ENTER\n")
     Path("c.toml").write_text(polycnc("post", "-c", "din", "--show-control"))
     Path("link.csv").symlink_to("m.toml")

@@ -86,10 +86,12 @@ def run_command(
 
     outputs = _Outputs(trace, plot, screen, save_stock, save_parameters)
     body = options.body_of(stock, resolution, fixture, target, tolerance)
-    outputs.check(programs, (*programs, machine, dialect, keys, stock, target, *body["fixtures"]))
+    outputs.check(programs, (*programs, machine, dialect, keys, target, *_files(stock, *body["fixtures"])))
     named = load_machine(machine)
     check_stock_file(save_stock, stock if stock is not None or named.stock is None else named.stock.form)
-    outputs.check(programs, (each.form for each in (named.stock, *named.fixtures) if each is not None))
+    outputs.check(
+        programs, _files(*(each.form for each in (named.stock, *named.fixtures) if each is not None))
+    )
     texts = [read_program(program) for program in programs]
     settings = runner.RunSettings(
         machine,
@@ -158,6 +160,15 @@ def check_stock_file(path: Path | None, stock: str | None) -> None:
     if stock is None:
         raise UsageError("there is no stock to save", hint="Say what is cut: --stock auto.")
     check_output(path, MESH_FORMATS, "stock")
+
+
+def _files(*bodies: str | None) -> list[Path]:
+    """Return the files that bodies are read from."""
+    if not any(bodies):
+        return []
+    from polycnc.stock import file_of
+
+    return [file for body in bodies if body and (file := file_of(body)) is not None]
 
 
 def _say_total(results: Sequence[RunResult]) -> None:

@@ -22,10 +22,10 @@ def view_command(
 ) -> None:
     """Run a part program and write a page that shows it: path, time, blocks, tools, speed."""
     from polycnc.runner import check_view_file, open_in_browser, program_text, time_text, view_program
-    from polycnc.stock import Form
+    from polycnc.stock import file_of
 
     inputs = [program, *(Path(each) for each in (machine, dialect) if each is not None)]
-    if stock is not None and (body := Form(stock).file) is not None:
+    if stock is not None and (body := file_of(stock)) is not None:
         inputs.append(body)
     text = program_text(program)
     target = check_view_file(

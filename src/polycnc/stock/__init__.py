@@ -5,7 +5,7 @@ from polycnc.stock._course import Course
 from polycnc.stock._cutting import Cutting
 from polycnc.stock._engagement import Engagement
 from polycnc.stock._fixtures import check_fixtures, fixtures_of
-from polycnc.stock._form import Form, NoStockError, around
+from polycnc.stock._form import Form, NoStockError, around, file_of
 from polycnc.stock._insert import Insert, InsertKind, grooving_tool, iso_insert, threading_tool
 from polycnc.stock._mesh import Mesh
 from polycnc.stock._mesh_files import MESH_FORMATS
@@ -55,6 +55,7 @@ __all__ = [
     "around",
     "check_closed",
     "check_fixtures",
+    "file_of",
     "fixtures_of",
     "grooving_tool",
     "iso_insert",

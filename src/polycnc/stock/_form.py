@@ -61,12 +61,6 @@ class Form:
         if self.target is not None and not self.target.lower().endswith(".stl"):
             raise UsageError(f"'{self.target}' is no target", hint="Name an STL file.")
 
-    @property
-    def file(self) -> Path | None:
-        """The file that it is read from, None if it is another body."""
-        name = _file_of(self.text)[0]
-        return Path(name) if name.lower().endswith(".stl") else None
-
     def body(self, course: Rows, tools: Mapping[int, Tool]) -> Stock:
         """Return the body for a course of the tool.
 
@@ -145,6 +139,12 @@ class Form:
             UsageError: no such file, or a surface that is none.
         """
         return None if self.target is None else Target(Path(self.target), stock, self.tolerance_mm)
+
+
+def file_of(text: str) -> Path | None:
+    """Return the file that a body or fixture is read from, None for one that is told by numbers."""
+    name = _file_of(text)[0]
+    return Path(name) if name.lower().endswith(".stl") else None
 
 
 def _file_of(text: str) -> tuple[str, str]:
