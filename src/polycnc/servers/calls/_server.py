@@ -14,7 +14,16 @@ from polycnc.servers.calls._client import CallClient
 from polycnc.servers.calls._libraries import LIBRARIES
 from polycnc.servers.calls._linger import Linger
 from polycnc.servers.calls._trace import Trace
-from polycnc.servers.machines import AS_USUAL, LOOPBACK, Log, ServedMachine, Treatment, notice_loss, peers_of
+from polycnc.servers.machines import (
+    AS_USUAL,
+    LOOPBACK,
+    Crowd,
+    Log,
+    ServedMachine,
+    Treatment,
+    notice_loss,
+    peers_of,
+)
 
 _MOST_CLIENTS = 256
 _HELLO_S = 10.0
@@ -35,7 +44,7 @@ class CallsServer:
         trace: Path | None = None,
     ) -> None:
         self.address, self.port = address, port
-        self.lines: dict[_Line, None] = {}  # the oldest first
+        self.lines = Crowd[_Line](_MOST_CLIENTS, lambda each: each.is_new, lambda each: each.abort())
         kinds = dict.fromkeys(each.kind for each in machines)
         self._libraries = {LIBRARIES[kind].load().name: kind for kind in kinds}
         for kind in kinds:
@@ -77,7 +86,7 @@ class CallsServer:
         """Stop listening and end every connection."""
         if self._server is not None:
             self._server.close()
-        for line in tuple(self.lines):
+        for line in self.lines:
             line.abort()
         await asyncio.sleep(0)  # lets the connections tell that they are lost
         if self.trace is not None:
@@ -101,18 +110,6 @@ class CallsServer:
         return served.make(
             library.packed(packing) or library, [each.device for each in machines], None
         ), machines
-
-    def join(self, line: _Line) -> bool:
-        """Note a connection; where there are too many the oldest without a library makes room, else it is refused."""
-        if len(self.lines) >= _MOST_CLIENTS:
-            silent = next((each for each in self.lines if each.is_new), None)
-            if silent is None:
-                self.tell(f"more than {_MOST_CLIENTS} clients")
-                return False
-            del self.lines[silent]
-            silent.abort()
-        self.lines[line] = None
-        return True
 
     def tell(self, sentence: str) -> None:
         """Write what was refused into the log."""
@@ -159,7 +156,8 @@ class _Line(asyncio.BufferedProtocol):
         self.transport = transport
         notice_loss(transport)
         self._linger = Linger(transport, self._buffer)
-        if not self._server.join(self):
+        if not self._server.lines.join(self):
+            self._server.tell(f"more than {_MOST_CLIENTS} clients")
             transport.abort()
             return
         self._limit = asyncio.get_running_loop().call_later(_HELLO_S, self.abort)
@@ -238,7 +236,7 @@ class _Line(asyncio.BufferedProtocol):
             self.transport.resume_reading()
 
     def connection_lost(self, error: Exception | None) -> None:
-        self._server.lines.pop(self, None)
+        self._server.lines.leave(self)
         self._linger.close()
         if self._later is not None:
             self._later.cancel()

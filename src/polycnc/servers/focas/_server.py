@@ -19,7 +19,16 @@ from polycnc.servers.focas._control import FocasControl
 from polycnc.servers.focas._faults import FaultKind, Faults, PresentFaults
 from polycnc.servers.focas._profile import Profile
 from polycnc.servers.focas._session import Ending, Session, State
-from polycnc.servers.machines import HostOwner, Keeper, Owner, Patience, ServedMachine, notice_loss, peers_of
+from polycnc.servers.machines import (
+    Crowd,
+    HostOwner,
+    Keeper,
+    Owner,
+    Patience,
+    ServedMachine,
+    notice_loss,
+    peers_of,
+)
 
 PORT = 8193
 LOOPBACK = "127.0.0.1"
@@ -54,7 +63,7 @@ class FocasServer:
         self.control = FocasControl(control, profile, faults, keep=keep)
         self.calls: CallsServer | None = None
         self._server: asyncio.Server | None = None
-        self._lines: dict[_Line, None] = {}  # the oldest first
+        self.lines = Crowd[_Line](MOST_LINES, lambda each: each.is_new, lambda each: each.abort())
         self._watch: asyncio.TimerHandle | None = None
         self._task: asyncio.Task[None] | None = None  # keeps it from being collected
 
@@ -77,7 +86,7 @@ class FocasServer:
     @property
     def clients(self) -> list[str]:
         """The addresses of the clients that are connected now."""
-        found = peers_of(each.transport for each in self._lines)
+        found = peers_of(each.transport for each in self.lines)
         return sorted([*found, *(self.calls.clients if self.calls is not None else [])])
 
     async def start(self) -> None:
@@ -140,26 +149,11 @@ class FocasServer:
             self._watch.cancel()
         if self._server is not None:
             self._server.close()
-        for line in tuple(self._lines):
+        for line in self.lines:
             line.abort()
         if self.calls is not None:
             await self.calls.close()
         await asyncio.sleep(0)  # lets the connections tell that they are lost
-
-    def joined(self, line: _Line) -> bool:
-        """Note a connection; where there are too many the oldest that is not open makes room, else it is refused."""
-        if len(self._lines) >= MOST_LINES:
-            silent = next((each for each in self._lines if each.is_new), None)
-            if silent is None:
-                return False
-            self.left(silent)
-            silent.abort()
-        self._lines[line] = None
-        return True
-
-    def left(self, line: _Line) -> None:
-        """Forget a connection."""
-        self._lines.pop(line, None)
 
 
 class _Line(asyncio.Protocol):
@@ -182,7 +176,7 @@ class _Line(asyncio.Protocol):
         assert isinstance(transport, asyncio.Transport)
         self.transport = transport
         notice_loss(transport)
-        if self._server.joined(self):
+        if self._server.lines.join(self):
             self._patience.begin(LEAST_PATIENCE_S)
         else:
             transport.abort()
@@ -277,7 +271,7 @@ class _Line(asyncio.Protocol):
         """End the session."""
         self._gone = True
         self._patience.end()
-        self._server.left(self)
+        self._server.lines.leave(self)
         self._server.owner.submit(self._session.lost, lambda _: None)
 
     def abort(self) -> None:

@@ -1,6 +1,13 @@
 """Served machines: a device, who lets its time pass, what happens to it by itself, and the doors to it."""
 
-from polycnc.servers.machines._connections import Patience, notice_loss, peers_of, take_all_files, tell_errors
+from polycnc.servers.machines._connections import (
+    Crowd,
+    Patience,
+    notice_loss,
+    peers_of,
+    take_all_files,
+    tell_errors,
+)
 from polycnc.servers.machines._door import LOOPBACK, Door, DoorKind, Wanted
 from polycnc.servers.machines._log import Log
 from polycnc.servers.machines._machine import (
@@ -37,6 +44,7 @@ __all__ = [
     "NO_PARAMETERS",
     "NO_SIGNALS",
     "NO_VARIABLES",
+    "Crowd",
     "Door",
     "DoorKind",
     "HostOwner",

@@ -6,8 +6,10 @@ import asyncio
 import contextlib
 import errno
 import socket
-from collections.abc import Callable, Iterable
-from typing import Any
+from collections.abc import Callable, Iterable, Iterator
+from typing import Any, Generic, TypeVar
+
+L = TypeVar("L")
 
 VANISHED_AFTER_S = 60
 _PROBES, _BETWEEN_S = 4, 10
@@ -35,6 +37,40 @@ def peers_of(transports: Iterable[asyncio.BaseTransport | None]) -> list[str]:
     """Return the addresses of the clients of these connections, as users write them."""
     names = (None if each is None else each.get_extra_info("peername") for each in transports)
     return sorted(f"{name[0]}:{name[1]}" if isinstance(name, tuple) else "local" for name in names if name)
+
+
+class Crowd(Generic[L]):
+    """The connections of a door, the oldest first; beyond `most` the oldest that `is_silent` makes room, by `end`."""
+
+    def __init__(self, most: int, is_silent: Callable[[L], bool], end: Callable[[L], None]) -> None:
+        self._most = most
+        self._is_silent = is_silent
+        self._end = end
+        self._lines: dict[L, None] = {}
+
+    def __iter__(self) -> Iterator[L]:
+        return iter(tuple(self._lines))
+
+    def __len__(self) -> int:
+        return len(self._lines)
+
+    def __contains__(self, line: object) -> bool:
+        return line in self._lines
+
+    def join(self, line: L) -> bool:
+        """Note a connection; False where none makes room for it."""
+        if len(self._lines) >= self._most:
+            silent = next(filter(self._is_silent, self._lines), None)
+            if silent is None:
+                return False
+            del self._lines[silent]
+            self._end(silent)
+        self._lines[line] = None
+        return True
+
+    def leave(self, line: L) -> None:
+        """Forget a connection."""
+        self._lines.pop(line, None)
 
 
 class Patience:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import asyncio
 
 from polycnc.errors import UsageError
-from polycnc.servers.machines import LOOPBACK, ServedMachine, notice_loss, peers_of, treatment_of
+from polycnc.servers.machines import LOOPBACK, Crowd, ServedMachine, notice_loss, peers_of, treatment_of
 from polycnc.servers.mtconnect import VERSIONS, model_of
 from polycnc.servers.plant import see
 from polycnc.servers.shdr._lines import Adapter, Session
@@ -31,7 +31,11 @@ class ShdrServer:
         self._see = see(machine.find_control)
         self._address, self._port = address, port
         self._server: asyncio.Server | None = None
-        self._agents: dict[asyncio.StreamWriter, bool] = {}  # whether it has sent a line; the oldest first
+        self._connected = Crowd[asyncio.StreamWriter](
+            _MOST_AGENTS, lambda writer: writer not in self._spoken, lambda writer: writer.transport.abort()
+        )
+        self._spoken: set[asyncio.StreamWriter] = set()  # those that have sent a line
+        self._agents: dict[asyncio.StreamWriter, None] = {}  # those that are told what changes
         self._turns: asyncio.Task[None] | None = None
 
     @property
@@ -42,7 +46,7 @@ class ShdrServer:
     @property
     def clients(self) -> list[str]:
         """The addresses of the clients that are connected now."""
-        return peers_of(writer.transport for writer in self._agents)
+        return peers_of(writer.transport for writer in self._connected)
 
     async def start(self) -> None:
         """Listen.
@@ -68,7 +72,7 @@ class ShdrServer:
             self._turns.cancel()
         if self._server is not None:
             self._server.close()
-        for writer in tuple(self._agents):
+        for writer in self._connected:
             writer.close()
         if self._server is not None:
             await self._server.wait_closed()
@@ -96,10 +100,10 @@ class ShdrServer:
         """Send a new agent everything, at the present cycle."""
         self._look()
         self._send(writer, self._adapter.everything())
-        self._agents[writer] = False
+        self._agents[writer] = None
 
     async def _serve(self, reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
-        if len(self._agents) >= _MOST_AGENTS and not self._make_room():
+        if not self._connected.join(writer):
             writer.close()
             return
         notice_loss(writer.transport)
@@ -109,8 +113,8 @@ class ShdrServer:
                 return
             self._machine.keeper.submit(lambda: self._begin(writer), lambda _: None)
             while data := await reader.read(_PIECE_BYTES):
-                if b"\n" in data and writer in self._agents:
-                    self._agents[writer] = True
+                if b"\n" in data:
+                    self._spoken.add(writer)
                 for _ in range(data.count(b"\n")):
                     if not await self._treated(writer):
                         return
@@ -119,17 +123,10 @@ class ShdrServer:
         except (OSError, asyncio.CancelledError):
             pass  # it has gone, or the door closes
         finally:
+            self._connected.leave(writer)
+            self._spoken.discard(writer)
             self._agents.pop(writer, None)
             writer.close()
-
-    def _make_room(self) -> bool:
-        """End the oldest connection that has sent no line; tell whether there is one."""
-        silent = next((writer for writer, has_sent in self._agents.items() if not has_sent), None)
-        if silent is None:
-            return False
-        del self._agents[silent]
-        silent.transport.abort()
-        return True
 
     async def _treated(self, writer: asyncio.StreamWriter) -> bool:
         """Count a connection or a command, and do what a scenario wants with it; tell whether it is answered."""
