@@ -89,7 +89,7 @@ def run_command(
     outputs.check(programs, (*programs, machine, dialect, keys, target, *_files(stock, *body["fixtures"])))
     named = load_machine(machine)
     check_stock_file(save_stock, stock if stock is not None or named.stock is None else named.stock.form)
-    outputs.check(programs, _files(*(each and each.form for each in (named.stock, *named.fixtures))))
+    outputs.check(programs, _files(*(each.form for each in (named.stock, *named.fixtures) if each)))
     texts = [read_program(program) for program in programs]
     settings = runner.RunSettings(
         machine,
