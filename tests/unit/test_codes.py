@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 import string
 from collections.abc import Iterator
+from dataclasses import replace
 from typing import Any
 
 import pytest
@@ -15,7 +16,7 @@ from polycnc.nc import DIALECTS, Channel, ProgramText, load_dialect
 from polycnc.nc.blocks import _codes, _interpreter
 from polycnc.nc.blocks._block import BlockContext
 from polycnc.nc.blocks._codes import CODES, MOTION_MODES
-from polycnc.nc.modal._actions import Action, Family, Group
+from polycnc.nc.modal._actions import Action, Group
 from polycnc.nc.text._scan_plain import scan_block
 
 BY_STEPS = {  # of their own: other words ask for them too, or they only change how the block is read
@@ -72,13 +73,17 @@ class Taker:
         self.channel.fill()
         self.before = self.channel.state.copy()
         self.made = made
+        lines = ("G1 X4. Z3.\n", "G1 X6. Z1.\n")  # of a sub-program whose profile is cut
+        rules = self.dialect.text_rules()
+        self.profile = tuple(scan_block(ProgramText.from_text(line), 0, 1, rules) for line in lines)
         self.axes = set(self.before.axis_names) | set(self.dialect.incremental)
 
     def taken(self, line: str) -> set[str]:
         """Return the addresses that a block takes, refused or not."""
         text = ProgramText.from_text(line)
         with contextlib.suppress(ProgramError):
-            self.channel.interpreter.execute(text, scan_block(text, 0, 1, self.dialect.text_rules()))
+            block = scan_block(text, 0, 1, self.dialect.text_rules())
+            self.channel.interpreter.execute(text, replace(block, profile=self.profile))
         self.channel.state.take(self.before)
         return self.made[-1].words.used & self.made[-1].words.by_letter.keys()
 
@@ -113,12 +118,11 @@ def test_a_row_names_no_words_that_its_code_never_takes(made: list[BlockContext]
             blocks = [code + "".join(f" {each}2." for each in own if each != other) for other in ("", *own)]
             beside = (
                 " X2. Y3.", " I5.", " L10 P2", " L1 P1", " P2", " P2 Q2", " G18 Z-19. P2. I-1. J1. K3.",
+                " G18 X2. Z5. Q1.",
             )  # fmt: skip
             blocks += [f"{code}{some} {each}2." for some in beside for each in own if each not in some]
             contour = "\nN2 G1 X2. Z2.\n"
             found = set().union(*(taker.taken(block + contour) for block in blocks))
             letters = {each for each in action.takes if len(each) == 1}
-            if action.family is Family.PROFILE:  # taken with the profile, a sub-program of the language
-                letters = set()
             never[action] = (never.get(action, letters)) - found
     assert {action.title: words for action, words in never.items() if words} == {}
