@@ -8,6 +8,7 @@ import re
 import pytest
 
 from polycnc.cnc import Control, Mode
+from polycnc.machine import load_machine
 from polycnc.servers.grbl import GrblAlarm, GrblCore, GrblError, grbl_control
 from support.cnc_machine import cnc_machine
 from support.grbl_sender import SURFACE, Bench, stream
@@ -18,6 +19,19 @@ UNIT = "G21 G90 G94\n"
 def test_a_sender_is_greeted() -> None:
     core = GrblCore(grbl_control(cnc_machine()))
     assert core.greet() == b"\r\nGrbl 1.1h ['$' for help]\r\n"
+
+
+def test_whoever_stands_has_no_speed_in_any_cycle() -> None:
+    core = GrblCore(control := grbl_control(load_machine("mill3")))
+    core.receive(b"G1 X5 F3000\n")
+    found = set()
+    for _ in range(120):
+        control.advance(1)
+        core.turn()
+        report = core.receive(b"?").decode()
+        found.add((report.split("|")[0], report.split("FS:")[1].split(",")[0]))
+    assert ("<Run", "3000") in found
+    assert {speed for state, speed in found if state == "<Idle"} == {"0"}
 
 
 def test_the_state_and_its_fields() -> None:

@@ -85,12 +85,14 @@ class StatusReport:
             parts = [state, "WPos:" + self._units.lengths(work)]
         if mask & 2:
             parts.append(f"Bf:{max(0, PLANNER_BLOCKS - queued)},{free}")
-        parts.append(
-            f"FS:{self._units.rate(status.channel.feed.actual)},{abs(status.spindle.actual_rpm):.0f}"
-        )
+        idle = state.split(":")[0] in _IDLE_STATES
+        feed = (
+            0.0 if idle else status.channel.feed.actual
+        )  # not that of the very cycle in which a motion ended
+        parts.append(f"FS:{self._units.rate(feed)},{abs(status.spindle.actual_rpm):.0f}")
         if pins:
             parts.append("Pn:" + pins)
-        parts += self._seldom(state.split(":")[0] in _IDLE_STATES, status, zero, accessories)
+        parts += self._seldom(idle, status, zero, accessories)
         return "<" + "|".join(parts) + ">"
 
     def _seldom(self, idle: bool, status: Status, zero: Sequence[float], accessories: str) -> list[str]:
