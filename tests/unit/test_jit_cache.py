@@ -5,6 +5,7 @@ from __future__ import annotations
 import importlib
 import logging
 import os
+import pickle
 import pkgutil
 import shutil
 import subprocess
@@ -14,6 +15,7 @@ from pathlib import Path
 from types import ModuleType
 from typing import cast
 
+import llvmlite.binding
 import pytest
 
 import polycnc
@@ -125,6 +127,25 @@ def test_another_place_new_times_comments_and_what_nothing_reaches_compile_nothi
     _replace(package / "kernel.py", "41", "42")
     _replace(package / "left.py", "    for _", "    # Again and again.\n    for _")
     assert _run(tree, cache) == (BOTH_LOADED, "")
+
+
+def test_what_is_kept_is_machine_code_without_the_code_that_it_was_made_of(
+    tree: Path, cache: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.syspath_prepend(str(tree))
+    folder = cache / "polycnc" / "compiled"
+    for path in sorted(folder.glob("*.nbc")):
+        data = Files(folder).read(path.stem)
+        assert data is not None
+        (_, kind, (machine_code, module)), *_ = pickle.loads(data)
+        assert kind == "object"
+        assert machine_code.startswith(b"\x7fELF") == (sys.platform == "linux")
+        functions = list(llvmlite.binding.parse_bitcode(module).functions)
+        assert any("run" in each.name for each in functions)
+        code = [
+            str(step).strip() for each in functions for block in each.blocks for step in block.instructions
+        ]
+        assert code == ["ret void"] * len(functions)
 
 
 def test_a_line_of_one_core_compiles_that_core(tree: Path, cache: Path) -> None:
