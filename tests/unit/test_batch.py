@@ -221,7 +221,7 @@ def test_a_process_that_is_killed_loses_nothing(tmp_path: Path, monkeypatch: pyt
     for _, child in Kept.free:
         child.close()
     Kept.free.clear()
-    paths = _store(tmp_path / "parts", 60)
+    paths = _store(tmp_path / "parts", 20)
     killed: list[int] = []
 
     def kill(seen: int, total: int) -> None:
