@@ -43,12 +43,12 @@ def contour_blocks(
         return ContourTrouble(f"there is no block N{first}", "P names the first block of the contour.")
     blocks = [begin]
     while not (blocks[-1].flags & STATEMENT or _is_numbered(blocks[-1], last)):
-        block = blocks[-1]
-        if block.end >= len(text) or len(blocks) > MOST_CONTOUR_BLOCKS:
+        after = text.next_line(blocks[-1].offset)
+        if after >= len(text) or len(blocks) > MOST_CONTOUR_BLOCKS:
             return ContourTrouble(
                 f"there is no block N{last} after N{first}", "Q names the last block of the contour."
             )
-        blocks.append(scan_block(text, block.end, block.line + 1, rules))
+        blocks.append(scan_block(text, after, blocks[-1].line + 1, rules))
     if blocks[-1].flags & STATEMENT:
         return ContourTrouble(
             "a contour that is cut apart by statements is not supported yet",

@@ -118,7 +118,7 @@ class LineCheck:
             while offset < len(text):
                 block = scan_block(text, offset, line, self._rules)
                 self._take(text, block, skip_levels)
-                offset, line = block.end, line + 1
+                offset, line = text.next_line(offset), line + 1
         except ProgramError:
             self.state.take(before)
             self.state.tables.restore(tables)
