@@ -84,7 +84,7 @@ class ProgramRun:
         self.stopper: Stopper = runner.stopper
         self.overrides: PathOverrides = runner.overrides
         self.switches = RunSwitches(runner)
-        self.reading = RunReading(runner)
+        self.reading: RunReading = runner.reading
         self.selection = RunSelection(runner, self._channels, self.reading, program)
         self._going_back = RunGoingBack(runner, self._channels, program)
 
@@ -202,7 +202,7 @@ class ProgramRun:
     @property
     def at_rest(self) -> bool:
         """Whether the path stands."""
-        return self._runner.at_rest
+        return self.reading.at_rest
 
     @property
     def alarm(self) -> RunAlarm | None:
