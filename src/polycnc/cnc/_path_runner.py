@@ -127,7 +127,7 @@ class PathRunner:
             self.passed.take(self.channel, self.moment)
             if self.row["event"] >= 0:
                 at_once = cycles == 0 or self.passed.at_once
-                self.events.meet()
+                self.events.handle()
                 if at_once:
                     self.path_hold.count_rest()
             elif cycles == 0:
@@ -167,7 +167,7 @@ class PathRunner:
             self.events.probe(self.moment.probing)
         if raised & kernel.PATH_EVENT and self.row["event"] >= 0:
             at_once |= self.passed.at_once
-            self.events.meet()
+            self.events.handle()
         if at_once:
             self.path_hold.count_rest()
         if raised & kernel.RECORDER_FULL:

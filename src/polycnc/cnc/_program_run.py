@@ -38,7 +38,7 @@ class ProgramRun:
     `rows` gets the recorder's rows in pieces, with the tag of each row's block; their column BLOCK holds lines.
     `on_event` gets each auxiliary function in the cycle in which the path comes to it; if it returns True the path
     stands there until `events.answered`. With `on_passed` the path does not stop for those at which it need not: they
-    are told later, to that. `axes` are the names of the machine's axes in this channel, those of others by
+    are reported to that later. `axes` are the names of the machine's axes in this channel, those of others by
     `of_another_channel`.
 
     `switches.skip_signal` is the signal that ends a skip move: the axes brake, and the next block goes on from where

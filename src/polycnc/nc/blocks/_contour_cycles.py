@@ -14,7 +14,7 @@ from polycnc.nc.blocks import _turning_moves as turns
 from polycnc.nc.blocks._block import BlockContext
 from polycnc.nc.blocks._channel_state import ChannelState
 from polycnc.nc.blocks._contours import (
-    ContourTrouble,
+    ContourProblem,
     contour_blocks,
     holds_cycle,
     names_x_and_z,
@@ -99,7 +99,7 @@ def _contour(block: BlockContext, g: GWord) -> list[Block]:
     here = text.next_line(block.block.offset)
     begin = numbered_block(text, numbers[0], here, len(text), rules)
     blocks = contour_blocks(text, begin or numbered_block(text, numbers[0], 0, here, rules), numbers, rules)
-    if isinstance(blocks, ContourTrouble):
+    if isinstance(blocks, ContourProblem):
         raise block.problem(*blocks, g.word)
     if any(each.flags & STATEMENT for each in blocks):
         raise block.problem(

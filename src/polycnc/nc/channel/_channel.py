@@ -91,7 +91,7 @@ class Channel:
         self._search = search = Search(calls, reader, language)
         self._reference = _reference(self.records, reader, calls)
         self.interpreter = Interpreter(
-            dialect, self.state, self.messages, self.writer, calls.trouble, self._reference
+            dialect, self.state, self.messages, self.writer, calls.problem, self._reference
         )
         self._preparation = Preparation(
             reader,

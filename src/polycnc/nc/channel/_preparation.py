@@ -12,7 +12,7 @@ from polycnc.errors import ProgramError
 from polycnc.machine import Clock
 from polycnc.nc.blocks._interpreter import Interpreter
 from polycnc.nc.blocks._moves import Stop, Wait
-from polycnc.nc.blocks._outcomes import Control
+from polycnc.nc.blocks._outcomes import Continuation
 from polycnc.nc.channel._calls import Calls
 from polycnc.nc.channel._errors import Errors
 from polycnc.nc.channel._options import ChannelOptions
@@ -257,15 +257,15 @@ class Preparation:
     def _execute(self, text: ProgramText, block: Block) -> None:
         """Execute a block and go on where it says."""
         outcome = self._interpreter.execute(text, block)
-        match outcome.control:
-            case Control.END:
+        match outcome.continuation:
+            case Continuation.END:
                 if not self._end_returns or not self._calls.leave():
                     self._end()
-            case Control.CALL:
+            case Continuation.CALL:
                 self._calls.enter(outcome.program, outcome.repeats, block.line)
-            case Control.GO_ON:
+            case Continuation.GO_ON:
                 self._go_behind(outcome.place, block)
-            case Control.RETURN:
+            case Continuation.RETURN:
                 self._return()
             case _:
                 pass
