@@ -15,26 +15,6 @@ _MOST_DIGITS = 300
 _BEYOND = 10**_MOST_DIGITS
 
 
-def mm_from_inch(inch: float) -> float:
-    """Convert inch to mm."""
-    return inch * MM_PER_INCH
-
-
-def inch_from_mm(mm: float) -> float:
-    """Convert mm to inch."""
-    return mm / MM_PER_INCH
-
-
-def per_s_from_per_min(per_min: float) -> float:
-    """Convert a rate per minute (mm/min, rev/min) to a rate per second."""
-    return per_min / SECONDS_PER_MINUTE
-
-
-def per_min_from_per_s(per_s: float) -> float:
-    """Convert a rate per second to a rate per minute."""
-    return per_s * SECONDS_PER_MINUTE
-
-
 def whole(digits: str | bytes) -> int:
     """Return a whole number from its digits; with more of them than Python reads it is one beyond all that count."""
     return int(digits) if len(digits) <= _MOST_DIGITS else _BEYOND

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from hypothesis import assume, example, given, settings
 
-from polycnc.kernel._ramps import (
+from polycnc.kernel._path import (
     REGISTERS,
     SPEED_IN,
     SPEED_OUT,
@@ -17,11 +17,13 @@ from polycnc.kernel._ramps import (
     TIME_CRUISE,
     TIME_IN,
     TIME_OUT,
+    ramps_duration,
+)
+from polycnc.kernel._ramps import (
     halting_distance,
     plan_pause,
     plan_ramps,
     ramps_at,
-    ramps_duration,
     set_one_piece,
     set_pieces,
 )

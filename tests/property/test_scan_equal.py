@@ -114,7 +114,6 @@ def plain_blocks(text: ProgramText, rules: TextRules) -> list[tuple[int, int, Bl
         except ProgramError as error:
             found.append((offset, line, error))
         else:
-            assert block.end == text.next_line(offset)
             if not block.is_blank:
                 found.append((offset, line, block))
         offset = text.next_line(offset)

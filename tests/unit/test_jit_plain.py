@@ -15,9 +15,9 @@ import pytest
 
 import polycnc
 from polycnc.cli._warmup import _JOBS, warmup_command
-from polycnc.jit._entry import Entry, entries
+from polycnc.jit._entry import entries
 from polycnc.jit._marks import Mark
-from polycnc.jit._plain import ALLOWANCE, ALLOWED_STEPS, UNASKED_STEPS, Allowance, PlainFunctions
+from polycnc.jit._plain import ALLOWANCE, ALLOWED_STEPS, UNASKED_STEPS, Allowance, Entry, PlainFunctions
 from support.command import environment
 
 # Entries that tell from their arguments how long they take, and one that does not.

@@ -312,14 +312,14 @@ def test_a_lexicon_reads_one_token_and_says_where_it_ends() -> None:
 
 def test_tokens_are_stepped_over_taken_and_jumped_to() -> None:
     tokens = Tokens(LEXICON, "xyz ab * (12)  cd ?", 4, 16)
-    assert (tokens.token.text, tokens.behind, tokens.next_at) == ("ab", 4, 6)
+    assert (tokens.token.text, tokens.after, tokens.next_at) == ("ab", 4, 6)
     assert not tokens.take("*")
     assert tokens.token.text == "ab"
     assert tokens.take("AB")
-    assert (tokens.behind, tokens.token.text) == (6, "*")
+    assert (tokens.after, tokens.token.text) == (6, "*")
     assert tokens.expect("*") == Token("mark", "*", "*", 7)
     tokens.jump(10)
-    assert (tokens.behind, tokens.token.text, tokens.next_at) == (10, "12", 12)
+    assert (tokens.after, tokens.token.text, tokens.next_at) == (10, "12", 12)
     with pytest.raises(Flaw) as caught:
         tokens.expect("(", "open it")
     assert (caught.value.at, caught.value.what, caught.value.hint) == (

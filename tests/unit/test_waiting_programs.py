@@ -10,7 +10,7 @@ from polycnc.cnc import ControlEvent, RunState
 from polycnc.controllers.bosch import Pnc
 from polycnc.controllers.fanuc import PowerMate
 from polycnc.controllers.fanuc.device._history import Monitored
-from polycnc.nc.channel._turns import BARREN_TURNS, TURNS_PER_CYCLE
+from polycnc.nc.channel._preparation import BARREN_TURNS, TURNS_PER_CYCLE
 from polycnc.runner import run
 
 COUNTING = "#1=0\nWHILE[#1LT20000]DO1\n#1=#1+1\nEND1\nM30\n"

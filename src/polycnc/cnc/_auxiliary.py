@@ -38,7 +38,7 @@ class AuxiliaryFunctions:
         self.requests: dict[int, list[int]] = {}
         """The serial numbers of what each channel waits for at the PLC."""
 
-    def meet(self, channel: ControlChannel, event: Event, dialect: Dialect) -> bool:
+    def on_event(self, channel: ControlChannel, event: Event, dialect: Dialect) -> bool:
         """Hand the functions of a block over; return whether the path has to wait for their answers."""
         block = channel.executed
         if block is not None and channel.data.spindle:
@@ -80,7 +80,7 @@ class AuxiliaryFunctions:
         self._spindle.turn(rpm=power, direction=modal.spindle_direction if going else None)
 
     def _default_s(self, channel: ControlChannel, letter: str, number: int, dialect: Dialect) -> float:
-        """Return how long a function takes that the PLC has no word about; a spindle its ramp, a mere S nothing."""
+        """Return how long a function takes that the PLC does not handle: a spindle its ramp, S alone nothing."""
         action = _ACTIONS.get(dialect.m.get(f"{number}", ""))
         if letter != "M" or action in _STOPS:
             return 0.0

@@ -71,7 +71,7 @@ class Control:
             script=script,
             languages=languages,
             library=self._sub_program,
-            on_event=self._meet,
+            on_event=self._on_event,
         )
         self.machine, self.clock, self.channels = machine, of.clock, of.channels
         self.programs, self.tools, self.offsets = of.programs, of.tools, of.offsets
@@ -285,12 +285,12 @@ class Control:
         names = (name.format(number=number) for name in self.data.sub_program_names)
         return next((found for found in map(self.programs.find, names) if found is not None), None)
 
-    def _meet(self, path: int, event: Event) -> bool:
+    def _on_event(self, path: int, event: Event) -> bool:
         """Hand the auxiliary functions of a block to spindle and PLC; return whether the path has to wait for them."""
         if event.message:  # until the program goes on or is reset
             self.messages.show(PROGRAM_MESSAGE + path, event.message[:MOST_MESSAGE_CHARACTERS])
         self._time.raised |= ControlEvent.FUNCTION
-        return self.functions.meet(self.channels[path], event, self.dialect)
+        return self.functions.on_event(self.channels[path], event, self.dialect)
 
     def waiting_functions(self, path: int) -> tuple[str, ...]:
         """Return the auxiliary functions, like "M8", that a channel waits for."""

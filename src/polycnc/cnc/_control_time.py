@@ -35,7 +35,7 @@ class CycleWatch(Protocol):
         """Whether anything has to be looked at."""
 
     def look(self) -> None:
-        """Look at the control, behind a cycle."""
+        """Look at the control after a cycle."""
 
 
 class ControlTime:

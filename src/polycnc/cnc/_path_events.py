@@ -46,7 +46,7 @@ class PathEvents:
         """Tell whether the program would stand at such a stop now."""
         return self._options.stands_at_stops and (stop is Stop.PROGRAM or self._moment.optional_stop)
 
-    def meet(self) -> None:
+    def handle(self) -> None:
         """Do what the event asks for at which the path rests."""
         number = int(self._feed.row["event"])
         event = self._feed.channel.writer.take(number)

@@ -16,7 +16,6 @@ from polycnc.kernel import (
     READY,
     WITH_SPINDLE,
     earliest_limit,
-    free_slots,
     measure_queue,
     prepare_path,
     replan_path,
@@ -186,10 +185,7 @@ class PathFeed:
             return int(row["tail"])
         known = int(row["prepared"]) if row["depth"] else int(row["planned"])
         until = known - self._low_water
-        if (
-            until <= row["head"]
-            and free_slots(self.machine.state.paths, self.channel.path) < row["capacity"] // 8
-        ):
+        if until <= row["head"] and self.channel.writer.free < row["capacity"] // 8:
             # Braking takes longer than the queue is: go on with what is planned, which is always safe.
             return int(row["head"] + row["capacity"] // 4)
         return until

@@ -19,12 +19,12 @@ from polycnc.cnc._path_feed import PathFeed
 from polycnc.cnc._path_hold import PathHold
 from polycnc.cnc._path_overrides import PathOverrides
 from polycnc.cnc._run_progress import RunProgress
+from polycnc.cnc._run_reading import Floats, RunReading
 from polycnc.cnc._run_state import RunAlarm, RunOptions, RunState
 from polycnc.cnc._stops import Step, Stopper
 from polycnc.machine import Machine, Reason
 from polycnc.nc import LINE_MASK, Channel
 
-Floats: TypeAlias = npt.NDArray[np.float64]
 Rows: TypeAlias = Callable[[Floats, npt.NDArray[np.int64]], None]
 Until: TypeAlias = Reason | Callable[[], bool]
 
@@ -44,7 +44,7 @@ class PathRunner:
     """Run one path of a machine through what its channel prepares, as `moment` says.
 
     `feed` keeps the path supplied, `stopper` says where it rests, `overrides` how fast it goes, `path_hold` holds it,
-    `events` are what it meets. `rows` gets what is recorded, see `ProgramRun`.
+    `events` are what it meets, `reading` shows where it is. `rows` gets what is recorded, see `ProgramRun`.
     """
 
     def __init__(
@@ -65,6 +65,7 @@ class PathRunner:
         self.stopper = Stopper(channel.records, Step.INTO if moment.single_block else Step.RUN)
         self.feed = PathFeed(machine, channel, ahead, self.stopper)
         self.row = self.feed.row
+        self.reading = RunReading(machine, channel.path, self.feed, moment)
         self.path_hold = PathHold(machine, self.feed, moment)
         self.events = PathEvents(machine, self.feed, self.stopper, self.path_hold, moment, options)
         self._head = 0  # the segment count before the last cycles
@@ -85,28 +86,6 @@ class PathRunner:
     def channel(self, channel: Channel) -> None:
         self.feed.channel = channel
         self.stopper.records = channel.records
-
-    # ------------------------------------------------------------------ where it is
-
-    @property
-    def at_rest(self) -> bool:
-        """Whether the path stands; a thread goes on where its spindle turns round, though a hold waits for its end."""
-        if self.row["state"] == kernel.RUNNING:
-            return False
-        return not (self.moment.state is RunState.HOLD and self.moment.hold_later and self.feed.cuts_thread)
-
-    @property
-    def executed_tag(self) -> int:
-        """The tag of the block that is executed, or was last."""
-        row, met = self.row, self.moment.met
-        if met is not None and row["state"] == kernel.READY and row["head"] == met[0]:
-            return met[1]
-        return int(row["tag"])
-
-    @property
-    def to_go(self) -> Floats:
-        """What is left to the end of the executed block, by the place of the axis; 0 where none is being executed."""
-        return _way_left(self.machine, self.path, self.feed)
 
     # ------------------------------------------------------------------ time
 
@@ -148,7 +127,7 @@ class PathRunner:
             self.passed.take(self.channel, self.moment)
             if self.row["event"] >= 0:
                 at_once = cycles == 0 or self.passed.at_once
-                self.events.meet()
+                self.events.handle()
                 if at_once:
                     self.path_hold.count_rest()
             elif cycles == 0:
@@ -162,8 +141,8 @@ class PathRunner:
     def before_cycles(self, cycles: int, *, asleep: bool = False) -> int:
         """Make ready for up to `cycles` cycles, see `ProgramRun.before_cycles`; `asleep` as `advance`."""
         self.machine.state.clock[0]["mask"] |= kernel.RECORDER_FULL  # rows are kept whatever the program does
-        if self.moment.dropping or (self.moment.state is RunState.HOLD and self.at_rest):
-            return 0 if self.at_rest else cycles
+        if self.moment.dropping or (self.moment.state is RunState.HOLD and self.reading.at_rest):
+            return 0 if self.reading.at_rest else cycles
         if self.moment.state not in _GOING:
             return 0
         self._tidy()
@@ -188,7 +167,7 @@ class PathRunner:
             self.events.probe(self.moment.probing)
         if raised & kernel.PATH_EVENT and self.row["event"] >= 0:
             at_once |= self.passed.at_once
-            self.events.meet()
+            self.events.handle()
         if at_once:
             self.path_hold.count_rest()
         if raised & kernel.RECORDER_FULL:
@@ -227,7 +206,7 @@ class PathRunner:
         """Go on from where the program stands, as far as `step` says."""
         under_way = self.moment.unanswered or self.row["state"] in (kernel.RUNNING, kernel.HELD)
         within = self.moment.state is RunState.HOLD and under_way
-        record = self.executed_tag
+        record = self.reading.tag
         self.take_switch()
         self.events.pass_stop()
         self.moment.hold, self.moment.state = False, RunState.ACTIVE
@@ -264,7 +243,7 @@ class PathRunner:
         """Forget records that nobody can ask for any more."""
         if self.channel.records.crowded:
             self.drain()  # rows refer to records
-            self.feed.forget_records(self.executed_tag)
+            self.feed.forget_records(self.reading.tag)
 
     def _stand_at_marks(self) -> bool:
         """Carry out the blocks without segments that come next; return whether the program stops after one."""
@@ -302,7 +281,7 @@ class PathRunner:
         row = self.row
         ready = row["state"] == kernel.READY and not self.moment.unanswered
         if self.moment.dropping:
-            if self.at_rest:
+            if self.reading.at_rest:
                 self._drop()
         elif self.moment.state is RunState.ACTIVE and ready:
             if row["head"] >= row["limit"]:
@@ -336,19 +315,7 @@ class PathRunner:
         self.path_hold.apply()
 
     def _stop_by(self, text: str, code: str) -> None:
-        self.moment.alarm = RunAlarm(text, code, self.executed_tag, self.machine.clock.cycles)
+        self.moment.alarm = RunAlarm(text, code, self.reading.tag, self.machine.clock.cycles)
         self.moment.state = RunState.ALARM
         self.moment.hold, self.moment.hold_later = True, False
         self.path_hold.apply()
-
-
-def _way_left(machine: Machine, path: int, feed: PathFeed) -> Floats:
-    """Return what is left to the end of the executed block, by the place of the axis."""
-    row = feed.row
-    here = machine.state.paths.position[path]
-    if row["state"] not in (kernel.RUNNING, kernel.HELD):
-        return np.zeros_like(here)
-    last = feed.blocks.block_end(int(row["head"])) - 1
-    k = int(row["base"]) + last % int(row["capacity"])
-    left: Floats = machine.state.seg.end[k] - here
-    return left

@@ -55,7 +55,7 @@ class Probing:
 
 
 def cannot_begin(machine: Machine, channel: Channel) -> bool:
-    """Tell whether a move whose program is told cannot begin: the probe is in contact already, or free already."""
+    """Tell whether a move that reports to its program cannot begin: the probe is in contact, or free, already."""
     probe, config = channel.state.probe, channel.state.machine
     if probe is None or not probe.code:
         return False

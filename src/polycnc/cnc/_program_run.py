@@ -38,7 +38,7 @@ class ProgramRun:
     `rows` gets the recorder's rows in pieces, with the tag of each row's block; their column BLOCK holds lines.
     `on_event` gets each auxiliary function in the cycle in which the path comes to it; if it returns True the path
     stands there until `events.answered`. With `on_passed` the path does not stop for those at which it need not: they
-    are told later, to that. `axes` are the names of the machine's axes in this channel, those of others by
+    are reported to that later. `axes` are the names of the machine's axes in this channel, those of others by
     `of_another_channel`.
 
     `switches.skip_signal` is the signal that ends a skip move: the axes brake, and the next block goes on from where
@@ -84,7 +84,7 @@ class ProgramRun:
         self.stopper: Stopper = runner.stopper
         self.overrides: PathOverrides = runner.overrides
         self.switches = RunSwitches(runner)
-        self.reading = RunReading(runner)
+        self.reading: RunReading = runner.reading
         self.selection = RunSelection(runner, self._channels, self.reading, program)
         self._going_back = RunGoingBack(runner, self._channels, program)
 
@@ -202,7 +202,7 @@ class ProgramRun:
     @property
     def at_rest(self) -> bool:
         """Whether the path stands."""
-        return self._runner.at_rest
+        return self.reading.at_rest
 
     @property
     def alarm(self) -> RunAlarm | None:

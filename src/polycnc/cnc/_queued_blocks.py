@@ -38,24 +38,6 @@ class QueuedBlocks:
         tags: list[int] = self._tags[slots].tolist()
         return tags
 
-    def block_end(self, count: int) -> int:
-        """Return the count after the last segment of the block that segment `count` belongs to, as far as known."""
-        tail = int(self.row["tail"])
-        if count >= tail:
-            return tail
-        segments, row = self._tags, self.row
-        base, capacity = int(row["base"]), int(row["capacity"])
-        tag = segments[base + count % capacity]
-        count += 1
-        if count < tail and segments[base + count % capacity] != tag:
-            return count
-        while count < tail:
-            for other in self.tags(count, min(count + PIECE, tail)):
-                if other != tag:
-                    return count
-                count += 1
-        return count
-
     def next_tag(self) -> int | None:
         """Return the tag of the block that comes next, None if it has not been prepared."""
         marks, head = self._marks(), int(self.row["head"])

@@ -82,7 +82,7 @@ class RunSwitches:
     def machine_lock(self, on: bool) -> None:
         if on == self._moment.locked:
             return
-        if not self._runner.at_rest:
+        if not self._runner.reading.at_rest:
             raise UsageError("the machine lock cannot change while the axes move", hint="Hold first.")
         if not on and self._moment.state not in OVER:
             raise UsageError(

@@ -148,8 +148,9 @@ class StatusReader:
     def _turned(self, work: list[float]) -> list[float]:
         """Return distances from program zero as coordinates, where a work offset or the program turns the workpiece."""
         for channel in self._of.channels:
-            if (block := self._blocks[channel.path].read()) is not None:
-                block.modal.shifts.back(work)
+            block = self._blocks[channel.path].read()
+            if block is not None and (shifts := block.modal.shifts).turn is not None:
+                shifts.back(work)
         return work
 
     def _of_locked(self, actual: list[float]) -> list[float] | None:

@@ -1,7 +1,4 @@
-"""Decorators for functions that numba compiles: internal ones, and the entries from Python, which are kept on disk.
-
-numba is loaded when the first function has to be compiled, or looked for among those that are kept.
-"""
+"""Decorators for functions that numba compiles: internal ones, and the entries from Python, which are kept on disk."""
 
 from __future__ import annotations
 
@@ -10,7 +7,7 @@ from collections.abc import Callable
 from typing import Any, ParamSpec, TypeVar, cast, overload
 
 from polycnc.jit._marks import DISABLED, OPEN_INTERNALS, Kept, Mark
-from polycnc.jit._plain import ALLOWANCE, PlainEntry
+from polycnc.jit._plain import Entry
 
 P = ParamSpec("P")
 R = TypeVar("R")
@@ -32,76 +29,6 @@ class Internal(Mark):
         if self._twin is None:  # so that the functions that users run are the same with and without tests
             self._twin = Entry(self)
         return self._twin(*args, **kwargs)
-
-
-class Entry(Kept):
-    """A function that Python may call: plain while there is little to do, then by way of numba."""
-
-    def __init__(
-        self,
-        inner: Mark,
-        steps: Callable[..., int] | None = None,
-        spared: Callable[..., int] | None = None,
-    ) -> None:
-        super().__init__(inner)
-        self.steps, self.spared = steps, spared
-        code = inner.py_func.__code__
-        self._names = code.co_varnames[: code.co_argcount]
-        self._defaults = inner.py_func.__defaults__ or ()
-        self._plain: PlainEntry | None = None
-
-    @property
-    def stats(self) -> Any:
-        """How often numba found the function kept, and how often not."""
-        return self.compiled().stats
-
-    @property
-    def signatures(self) -> list[object]:
-        """The types of arguments for which the function is loaded."""
-        return [] if self.dispatcher is None else list(self.dispatcher.signatures)
-
-    def __call__(self, *args: Any, **kwargs: Any) -> Any:
-        """Do the work."""
-        if self.dispatcher is None:
-            values = self._values(args, kwargs)
-            if values is not None and ALLOWANCE.take_unasked(lambda: self.wanted(values)):
-                return self.plainly(values)
-            self.compiled()
-        return self.dispatcher(*args, **kwargs)
-
-    def compiled(self) -> Any:
-        """Return what numba makes of the function, which loads numba."""
-        if self.dispatcher is None:
-            from polycnc.jit._compile import make_entry
-
-            ALLOWANCE.ask()
-            make_entry(self)
-        return self.dispatcher
-
-    def wanted(self, values: tuple[Any, ...]) -> int:
-        """Return how many steps a call may take."""
-        return 1 if self.steps is None else self.steps(*values)
-
-    def plainly(self, values: tuple[Any, ...]) -> object:
-        """Do the work as it is written; its steps are counted already."""
-        if self._plain is None:
-            self._plain = PlainEntry(self)
-        result = self._plain(*values)
-        if self.spared is not None:
-            ALLOWANCE.give_back(self.spared(result, *values))
-        return result
-
-    def _values(self, args: tuple[Any, ...], kwargs: dict[str, Any]) -> tuple[Any, ...] | None:
-        """Return the arguments with the defaults in their places; None where they do not fit."""
-        missing = len(self._names) - len(args)
-        if missing == 0 and not kwargs:
-            return args
-        given = dict(zip(self._names[len(self._names) - len(self._defaults) :], self._defaults, strict=True))
-        given.update(kwargs)
-        try:
-            return (*args, *(given[name] for name in self._names[len(args) :]))
-        except KeyError:
-            return None  # numba says what is wrong
 
 
 _entries: dict[str, Kept] = {}  # by "module.name"

@@ -2,6 +2,7 @@
 
 Compiled functions are plain Python, with the same results to the last bit. As long as little has been asked of what is
 not kept on disk, Python runs it as it is written. What counts is steps, not time: the same calls always do the same.
+numba is loaded when the first function has to be compiled, or looked for among those that are kept.
 """
 
 from __future__ import annotations
@@ -13,7 +14,7 @@ from typing import Any, get_args, get_origin, get_type_hints
 
 import numpy as np
 
-from polycnc.jit._marks import Mark
+from polycnc.jit._marks import Kept, Mark
 
 ALLOWED_STEPS = 100_000
 """What a process may leave to the interpreter before it compiles: a second or two of work."""
@@ -38,20 +39,17 @@ class Allowance:
 
     def take_unasked(self, steps: Callable[[], int]) -> bool:
         """Tell whether a call of so many steps is left to the interpreter whatever is kept, and count them."""
-        if self._begun() <= self._floor:
-            return False
-        wanted = steps()
-        return self._begun() - wanted >= self._floor and self.take(lambda: wanted)
+        return self.take(steps, self._floor)
 
-    def take(self, steps: Callable[[], int]) -> bool:
-        """Tell whether a call of so many steps is left to the interpreter, and count them."""
+    def take(self, steps: Callable[[], int], floor: int = 0) -> bool:
+        """Tell whether a call of so many steps is left to the interpreter, with `floor` remaining, and count them."""
         left = self._begun()
-        if left <= 0:
+        if left <= floor:
             return False
-        wanted = steps()
-        if wanted > left:
+        left -= steps()
+        if left < floor:
             return False
-        self.left = left - wanted
+        self.left = left
         return True
 
     def give_back(self, steps: int) -> None:
@@ -105,20 +103,82 @@ class PlainFunctions:
         return known
 
 
-class PlainEntry:
-    """What Python calls instead of an entry while there is little to do."""
-
-    def __init__(self, mark: Mark) -> None:
-        self._plain = _PLAIN.of(mark)
-        self._result = get_type_hints(mark.py_func).get("return")
-
-    def __call__(self, *arguments: object) -> object:
-        """Do the work, and return what compiled code would: plain numbers, infinity where it is divided by zero."""
-        with np.errstate(all="ignore"):
-            return _as_compiled(self._plain(*arguments), self._result)
-
-
 _PLAIN = PlainFunctions()
+
+
+class Entry(Kept):
+    """A function that Python may call: plain while there is little to do, then by way of numba."""
+
+    def __init__(
+        self,
+        inner: Mark,
+        steps: Callable[..., int] | None = None,
+        spared: Callable[..., int] | None = None,
+    ) -> None:
+        super().__init__(inner)
+        self.steps, self.spared = steps, spared
+        code = inner.py_func.__code__
+        self._names = code.co_varnames[: code.co_argcount]
+        self._defaults = inner.py_func.__defaults__ or ()
+        self._plain: Callable[..., object] | None = None
+        self._result: object = None  # the type of what it returns
+
+    @property
+    def stats(self) -> Any:
+        """How often numba found the function kept, and how often not."""
+        return self.compiled().stats
+
+    @property
+    def signatures(self) -> list[object]:
+        """The types of arguments for which the function is loaded."""
+        return [] if self.dispatcher is None else list(self.dispatcher.signatures)
+
+    def __call__(self, *args: Any, **kwargs: Any) -> Any:
+        """Do the work."""
+        if self.dispatcher is None:
+            values = self._values(args, kwargs)
+            if values is not None and ALLOWANCE.take_unasked(lambda: self.wanted(values)):
+                return self.plainly(values)
+            self.compiled()
+        return self.dispatcher(*args, **kwargs)
+
+    def compiled(self) -> Any:
+        """Return what numba makes of the function, which loads numba."""
+        if self.dispatcher is None:
+            from polycnc.jit._compile import make_entry
+
+            ALLOWANCE.ask()
+            make_entry(self)
+        return self.dispatcher
+
+    def wanted(self, values: tuple[Any, ...]) -> int:
+        """Return how many steps a call may take."""
+        return 1 if self.steps is None else self.steps(*values)
+
+    def plainly(self, values: tuple[Any, ...]) -> object:
+        """Do the work as it is written and return what compiled code would; its steps are counted already.
+
+        That is plain numbers, and infinity where something is divided by zero.
+        """
+        if self._plain is None:
+            self._plain, self._result = _PLAIN.of(self), get_type_hints(self.py_func).get("return")
+        with np.errstate(all="ignore"):
+            result = _as_compiled(self._plain(*values), self._result)
+        if self.spared is not None:
+            ALLOWANCE.give_back(self.spared(result, *values))
+        return result
+
+    def _values(self, args: tuple[Any, ...], kwargs: dict[str, Any]) -> tuple[Any, ...] | None:
+        """Return the arguments with the defaults in their places; None where they do not fit."""
+        missing = len(self._names) - len(args)
+        if missing == 0 and not kwargs:
+            return args
+        given = dict(zip(self._names[len(self._names) - len(self._defaults) :], self._defaults, strict=True))
+        given.update(kwargs)
+        try:
+            return (*args, *(given[name] for name in self._names[len(args) :]))
+        except KeyError:
+            return None  # numba says what is wrong
 
 
 def _as_compiled(value: Any, hint: Any) -> Any:

@@ -16,7 +16,6 @@ from polycnc.kernel._bezier import MOST_SPANS, SPAN_CURVED, SPAN_END, SPAN_LENGT
 from polycnc.kernel._corner_rules import BY_DEVIATION, BY_SHARE, BY_SQUARE_CORNER
 from polycnc.kernel._geometry import segment_coordinate, segment_point, segment_slope
 from polycnc.kernel._jit import call_at, compiled, detached, entry
-from polycnc.kernel._lines import add_line
 from polycnc.kernel._lookahead import measure_queue
 from polycnc.kernel._merge import NOT_MERGED, append_line, close_line, merge_line
 from polycnc.kernel._path import (
@@ -43,12 +42,12 @@ from polycnc.kernel._path import (
     TOP_SPEED,
     WAIT_S,
     Paths,
-    free_slots,
+    add_line,
     make_paths,
+    planned_s,
     slot,
     start_path,
 )
-from polycnc.kernel._planned_time import planned_s
 from polycnc.kernel._point_to_point import ADDED, MAIN, PointToPoint, move_to, rest_position, stop_axis
 from polycnc.kernel._profile import (
     SHORT_JUMP,
@@ -197,7 +196,6 @@ __all__ = [
     "entry",
     "feed_time_s",
     "follow_cycle",
-    "free_slots",
     "give_to_path",
     "give_to_point_to_point",
     "make_limits",

@@ -9,9 +9,8 @@ from __future__ import annotations
 from polycnc.kernel._axis_limits import AxisLimits
 from polycnc.kernel._blend_arcs import round_to_arc
 from polycnc.kernel._jit import compiled, entry
-from polycnc.kernel._lines import appended, attach, end_thread, mark_last, set_ends
 from polycnc.kernel._overlap import overlap_corner
-from polycnc.kernel._path import Paths, slot
+from polycnc.kernel._path import Paths, appended, attach, end_thread, mark_last, set_ends, slot
 from polycnc.kernel._segments import STOP, Floats, Segments, set_arc, set_circle3d, set_spline, set_wait
 
 

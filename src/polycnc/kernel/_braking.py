@@ -12,8 +12,7 @@ import math
 from polycnc.kernel._jerk import brake_phases, brake_way, moved
 from polycnc.kernel._jerk_plan import last_known, node_short
 from polycnc.kernel._jit import compiled
-from polycnc.kernel._path import REST_SLACK, Paths, slot
-from polycnc.kernel._ramps import REGISTERS
+from polycnc.kernel._path import GONE, RATE, REGISTERS, REST_SLACK, SPEED_NOW, Paths, slot
 from polycnc.kernel._segments import (
     LIMIT,
     NODE_ACCEL,
@@ -28,9 +27,8 @@ from polycnc.kernel._segments import (
 )
 from polycnc.kernel._totals import leave_segment
 
-# Registers: where the path is in the segment at `head`, its speed and acceleration.
-GONE, SPEED_NOW, RATE = REGISTERS, REGISTERS + 1, REGISTERS + 2
-# The plan: what braking begins with and how long ago, its target as a place from the start of `head`, and its kind.
+# Registers of the plan: what braking begins with and how long ago, its target as a place from the start of `head`, its
+# kind.
 PLAN_S, PLAN_SPEED, PLAN_RATE, PLAN_TIME = REGISTERS + 3, REGISTERS + 4, REGISTERS + 5, REGISTERS + 6
 PLAN_TO, PLAN_END_SPEED, PLAN_ACCEL, PLAN_COUNT = REGISTERS + 7, REGISTERS + 8, REGISTERS + 9, REGISTERS + 10
 PLAN_KIND, PLAN_COAST = REGISTERS + 11, REGISTERS + 21  # the way before the braking, DIRECT: without that

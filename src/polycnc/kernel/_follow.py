@@ -17,7 +17,6 @@ import numpy as np
 from polycnc.kernel._braking import (
     AT_TARGET,
     DIRECT,
-    GONE,
     HALVINGS,
     LOOSE,
     NO_PLAN,
@@ -31,10 +30,8 @@ from polycnc.kernel._braking import (
     PLAN_SPEED,
     PLAN_TIME,
     PLAN_TO,
-    RATE,
     ROUNDING,
     SLACK,
-    SPEED_NOW,
     TIGHT,
     enter_next,
     go_by_plan,
@@ -44,8 +41,20 @@ from polycnc.kernel._braking import (
 from polycnc.kernel._jerk import brake_way, moved, wanted_rate
 from polycnc.kernel._jerk_plan import has_limited_jerk, last_known, node_short, plan_with_jerk
 from polycnc.kernel._jit import compiled
-from polycnc.kernel._path import HELD, INSIDE, READY, RESTED, Paths, is_held, slot
-from polycnc.kernel._ramps import REGISTERS, SPEED_PEAK
+from polycnc.kernel._path import (
+    GONE,
+    HELD,
+    INSIDE,
+    RATE,
+    READY,
+    REGISTERS,
+    RESTED,
+    SPEED_NOW,
+    SPEED_PEAK,
+    Paths,
+    is_held,
+    slot,
+)
 from polycnc.kernel._segments import (
     ASKED,
     EASE,

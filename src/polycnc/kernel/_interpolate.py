@@ -13,7 +13,6 @@ import math
 
 import numpy as np
 
-from polycnc.kernel._braking import GONE, SPEED_NOW
 from polycnc.kernel._curve_limits import goes_through
 from polycnc.kernel._follow import follow_cycle_along, follows, start_following
 from polycnc.kernel._geometry import segment_point
@@ -23,8 +22,11 @@ from polycnc.kernel._lookahead import window_speed
 from polycnc.kernel._path import (
     EVENT,
     FEED_S,
+    FROM_S,
+    GONE,
     HELD,
     INSIDE,
+    LENGTH,
     MOST_PASSED,
     NO_LIMIT,
     PASSED_AT_ONCE,
@@ -39,25 +41,24 @@ from polycnc.kernel._path import (
     RESTED,
     RESTS_PER_CYCLE,
     RUNNING,
+    SPEED_NOW,
+    SPEED_OUT,
     STILL,
+    TIME_CRUISE,
+    TIME_IN,
     Paths,
     is_held,
+    ramps_duration,
     slot,
 )
 from polycnc.kernel._ramps import (
-    FROM_S,
-    LENGTH,
     MOST_SHARE,
-    SPEED_OUT,
-    TIME_CRUISE,
-    TIME_IN,
     Floats,
     beside_corner,
     halting_distance,
     plan_pause,
     plan_ramps,
     ramps_at,
-    ramps_duration,
     set_pieces,
 )
 from polycnc.kernel._segments import WAIT, WAIT_EVENT, WAIT_PASSES, Segments

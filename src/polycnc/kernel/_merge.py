@@ -10,9 +10,8 @@ from __future__ import annotations
 from polycnc.kernel._axis_limits import AxisLimits
 from polycnc.kernel._blend import blend_corner, counting_axes
 from polycnc.kernel._jit import apart, compiled, entry
-from polycnc.kernel._lines import add_line, end_thread
 from polycnc.kernel._overlap import overlap_corner
-from polycnc.kernel._path import BLEND_COLUMNS, MOST_MERGED, SCRATCH_POINTS, Paths, slot
+from polycnc.kernel._path import BLEND_COLUMNS, MOST_MERGED, SCRATCH_POINTS, Paths, add_line, end_thread, slot
 from polycnc.kernel._segments import RAPID, STOP, WITH_SPINDLE, Floats, Segments, set_line
 
 NOT_MERGED = -1
@@ -140,15 +139,17 @@ def append_line(
     row = paths.row[g]
     if row["merged"] > 0:
         close_line(seg, paths, g, limits)
-    merges = row["merge_mm"] > 0.0 and row["tolerance_mm"] > 0.0 and not flags & (RAPID | STOP | WITH_SPINDLE)
+    rounds = row["tolerance_mm"] > 0.0
+    merges = row["merge_mm"] > 0.0 and rounds and not flags & (RAPID | STOP | WITH_SPINDLE)
     if not merges:
         end_thread(seg.row, paths.row, g, flags)
-        blend_corner(seg, paths, g, limits, end, speed_mm_s, tag)
+        if rounds:
+            blend_corner(seg, paths, g, limits, end, speed_mm_s, tag)
     added = add_line(
         seg.row, seg.start, seg.end, paths.row, paths.queued, g, limits.feed_axis, end, speed_mm_s, flags, tag
     )
     if merges and added:
         _open_line(seg, paths, g, limits)
-    elif added:
+    elif added and rounds:
         overlap_corner(seg, paths, g, limits)
     return bool(added)

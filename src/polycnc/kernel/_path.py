@@ -1,20 +1,34 @@
-"""A path: its part of the segment ring, and where it stands.
+"""A path: its part of the segment ring, where it stands, how lines get into it, how long it takes.
+
+The caller sees to free slots. Units: see `_segments`.
 
 Counts (`head`, `tail`, ...) only grow; the slot of count c is `base + c % capacity`.
 """
 
 from __future__ import annotations
 
-from typing import NamedTuple
+import math
+from typing import NamedTuple, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
 
 from polycnc.kernel._jit import compiled, entry
-from polycnc.kernel._ramps import ALL_REGISTERS
-from polycnc.kernel._segments import RAPID, WAIT, WITH_SPINDLE, Floats
+from polycnc.kernel._segments import (
+    CORNER_STOP,
+    LAST,
+    RAPID,
+    STOP,
+    WAIT,
+    WITH_SPINDLE,
+    Floats,
+    Segments,
+    set_line,
+)
+from polycnc.kernel._segments import WAIT_S as GEO_WAIT_S
 
 Ints = npt.NDArray[np.int64]
+Rows: TypeAlias = npt.NDArray[np.void]
 
 IDLE = 0  # not started
 READY = 1  # started and at rest: the next segment begins with the next cycle
@@ -40,6 +54,16 @@ SCRATCH_POINTS = (
     BLEND_COLUMNS + 3 * MOST_MERGED
 )  # column of `blend` from which there is room for three points
 
+# The registers of a running segment, see `_ramps`.
+SPEED_IN, SPEED_PEAK, SPEED_OUT, TIME_IN, TIME_CRUISE, TIME_OUT, FROM_S, LENGTH = 0, 1, 2, 3, 4, 5, 6, 7
+LEGS_IN = 8  # of each leg its time, and the speed at its far end
+LEGS_OUT = 14  # the same, from the segment's end backwards
+PIECES = 20  # of each piece its length and its acceleration
+REGISTERS = 26
+# Where the path is in a segment that is followed (`_follow`), its speed and acceleration.
+GONE, SPEED_NOW, RATE = REGISTERS, REGISTERS + 1, REGISTERS + 2
+ALL_REGISTERS = 50  # with those of `_follow`
+
 # Columns of `totals`.
 RAPID_S, FEED_S, WAIT_S, RAPID_LENGTH, FEED_LENGTH, SEGMENTS, TOP_SPEED = 0, 1, 2, 3, 4, 5, 6
 TOTALS = 7
@@ -52,6 +76,7 @@ MOST_PASSED = 1024
 RESTS_PER_CYCLE = 16
 """Points of rest at which no time passes, as functions that are answered at once, that a path leaves in one cycle."""
 
+_LEAST = 1e-9  # a speed of 0 is that of a segment without length, or of one that an override holds
 
 PATH_ROW = np.dtype(
     [
@@ -192,7 +217,120 @@ def slot_of(path: npt.NDArray[np.void], g: int, count: int) -> int:
     return int(path[g]["base"] + count % path[g]["capacity"])
 
 
-@entry
-def free_slots(paths: Paths, g: int) -> int:
-    """Return how many segments path `g` still takes."""
-    return int(paths.row[g]["capacity"] - (paths.row[g]["tail"] - paths.row[g]["head"]))
+@compiled
+def appended(ends: Floats, path: Rows, queued: Floats, g: int, k: int) -> None:
+    """Count slot `k` as the last segment of path `g`."""
+    path[g]["closed"] = 0
+    path[g]["tail"] += 1
+    for i in range(ends.shape[1]):
+        queued[g, i] = ends[k, i]
+
+
+@compiled
+def attach(row: Rows, path: Rows, g: int) -> None:
+    """Let the events that wait for the next motion of path `g` come with the last segment appended."""
+    events = path[g]["next_events"]
+    if events > 0:
+        k = slot_of(path, g, path[g]["tail"] - 1)
+        row[k]["event"], row[k]["events"] = path[g]["next_event"], events
+        path[g]["next_events"] = 0
+        if path[g]["in_step"] == 0:
+            path[g]["looked_at"] = path[g]["tail"] - 1
+        path[g]["in_step"] += 1
+
+
+@compiled
+def set_ends(row: Rows, path: Rows, g: int, flags: int) -> None:
+    """Let a path come to rest where positioning meets feed motion, and in the corners of an exact path."""
+    if path[g]["tolerance_mm"] < 0.0:
+        row[slot_of(path, g, path[g]["tail"])]["flags"] |= CORNER_STOP
+    end_thread(row, path, g, flags)
+    if path[g]["tail"] > path[g]["head"]:
+        k = slot_of(path, g, path[g]["tail"] - 1)
+        if (row[k]["flags"] ^ flags) & RAPID:
+            row[k]["flags"] |= STOP
+
+
+@compiled
+def end_thread(row: Rows, path: Rows, g: int, flags: int) -> None:
+    """Let a path rest, in a corner that is not rounded, where a motion with the spindle begins or ends."""
+    if path[g]["tail"] > path[g]["head"]:
+        k = slot_of(path, g, path[g]["tail"] - 1)
+        if (row[k]["flags"] ^ flags) & WITH_SPINDLE:
+            row[k]["flags"] |= STOP
+
+
+@compiled
+def mark_last(seg: Segments, paths: Paths, g: int) -> None:
+    """Mark the last segment appended as the end of a path with rounded corners, if nothing has planned it."""
+    path = paths.row[g]
+    if path["tolerance_mm"] > 0.0 and path["tail"] > path["prepared"]:
+        row = seg.row[slot(paths, g, path["tail"] - 1)]
+        if row["kind"] != WAIT and not row["flags"] & (STOP | CORNER_STOP):
+            row["flags"] |= LAST
+
+
+@compiled
+def add_line(
+    row: Rows,
+    starts: Floats,
+    ends: Floats,
+    path: Rows,
+    queued: Floats,
+    g: int,
+    feed_axis: npt.NDArray[np.uint8],
+    end: Floats,
+    speed_mm_s: float,
+    flags: int,
+    tag: int,
+) -> bool:
+    """Append a straight line to path `g`, corners as they are, from single columns; False if it has no length."""
+    k = slot_of(path, g, path[g]["tail"])
+    if not set_line(row, starts, ends, k, feed_axis, queued[g], end, speed_mm_s, flags, tag):
+        return False
+    set_ends(row, path, g, flags)
+    appended(ends, path, queued, g, k)
+    attach(row, path, g)
+    return True
+
+
+@compiled
+def ramps_duration(ramps: Floats) -> float:
+    """Return the time of the planned stretch in s."""
+    return float(ramps[TIME_IN] + ramps[TIME_CRUISE] + ramps[TIME_OUT])
+
+
+def _steps(seg: Segments, paths: Paths, g: int, *_: object) -> int:
+    return int(paths.row["prepared"][g] - paths.row["head"][g]) + 1
+
+
+@entry(steps=_steps)
+def planned_s(seg: Segments, paths: Paths, g: int, dt: float) -> float:
+    """Return how long path `g` takes to the end of what is planned (s), without a hold.
+
+    Ramps have their mean acceleration: with limited jerk, and beside corners, a motion takes a little longer.
+    """
+    path, ramps = paths.row[g], paths.ramps[g]
+    under_way = path["state"] == RUNNING or path["state"] == HELD
+    total, speed = 0.0, 0.0
+    for count in range(path["head"], path["prepared"]):
+        k = slot(paths, g, count)
+        row = seg.row[k]
+        first = under_way and count == path["head"]
+        if row["kind"] == WAIT or (first and path["jerk_mm_s3"] <= 0.0):
+            if first:
+                total += max(0.0, ramps_duration(ramps) - path["lead"] - path["cycles"] * dt)
+            else:
+                total += seg.geo[k, GEO_WAIT_S]
+            speed = row["out"]
+            continue
+        length = row["length"]
+        if first:
+            length, speed = length - ramps[GONE], path["speed"]
+        out, accel = row["out"], max(row["accel"], _LEAST)
+        square = min(row["cap"] * row["cap"], 0.5 * (speed * speed + out * out) + accel * length)
+        top = math.sqrt(max(square, _LEAST))
+        in_ramps = max(2.0 * top * top - speed * speed - out * out, 0.0) / (2.0 * accel)
+        total += max(2.0 * top - speed - out, 0.0) / accel + max(length - in_ramps, 0.0) / top
+        speed = out
+    return total

@@ -14,20 +14,22 @@ from __future__ import annotations
 
 import math
 
-import numpy as np
-import numpy.typing as npt
-
 from polycnc.kernel._jit import compiled
-
-Floats = npt.NDArray[np.float64]
-
-# The registers of a running segment.
-SPEED_IN, SPEED_PEAK, SPEED_OUT, TIME_IN, TIME_CRUISE, TIME_OUT, FROM_S, LENGTH = 0, 1, 2, 3, 4, 5, 6, 7
-LEGS_IN = 8  # of each leg its time, and the speed at its far end
-LEGS_OUT = 14  # the same, from the segment's end backwards
-PIECES = 20  # of each piece its length and its acceleration
-REGISTERS = 26
-ALL_REGISTERS = 50  # with those of `_follow`
+from polycnc.kernel._path import (
+    FROM_S,
+    LEGS_IN,
+    LEGS_OUT,
+    LENGTH,
+    PIECES,
+    SPEED_IN,
+    SPEED_OUT,
+    SPEED_PEAK,
+    TIME_CRUISE,
+    TIME_IN,
+    TIME_OUT,
+    ramps_duration,
+)
+from polycnc.kernel._segments import Floats
 
 ROUNDING = 4e-15  # by which a speed that can just be braked to may seem too low, on squares
 MOST_SHARE = 0.75  # of its acceleration is all that a segment gives up
@@ -212,12 +214,6 @@ def plan_pause(ramps: Floats, duration_s: float) -> None:
     set_one_piece(ramps, 0.0, 1.0)
     plan_ramps(ramps, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0)
     ramps[TIME_CRUISE] = duration_s
-
-
-@compiled
-def ramps_duration(ramps: Floats) -> float:
-    """Return the time of the planned stretch in s."""
-    return float(ramps[TIME_IN] + ramps[TIME_CRUISE] + ramps[TIME_OUT])
 
 
 @compiled

@@ -12,7 +12,6 @@ import numpy as np
 
 from polycnc.kernel._axis_limits import AxisLimits
 from polycnc.kernel._blend_arcs import may_be_rounded
-from polycnc.kernel._braking import GONE, RATE, SPEED_NOW
 from polycnc.kernel._cruise import first_open, limit_cruise
 from polycnc.kernel._follow import follows
 from polycnc.kernel._geometry import is_curved
@@ -21,11 +20,27 @@ from polycnc.kernel._jerk import brake_way, moved
 from polycnc.kernel._jerk_plan import has_limited_jerk, plan_with_jerk
 from polycnc.kernel._jit import compiled, entry
 from polycnc.kernel._limits import feed_in_force, least_accel, line_speed, overridden_rapid
-from polycnc.kernel._lines import mark_last
 from polycnc.kernel._lookahead import limit_queue, plan_path
 from polycnc.kernel._merge import close_line, is_open
-from polycnc.kernel._path import HELD, IDLE, NO_LIMIT, READY, RUNNING, Paths, slot
-from polycnc.kernel._ramps import FROM_S, LENGTH, SPEED_OUT, TIME_CRUISE, TIME_IN, ramps_at
+from polycnc.kernel._path import (
+    FROM_S,
+    GONE,
+    HELD,
+    IDLE,
+    LENGTH,
+    NO_LIMIT,
+    RATE,
+    READY,
+    RUNNING,
+    SPEED_NOW,
+    SPEED_OUT,
+    TIME_CRUISE,
+    TIME_IN,
+    Paths,
+    mark_last,
+    slot,
+)
+from polycnc.kernel._ramps import ramps_at
 from polycnc.kernel._segments import ASKED, RAPID, STOP, WAIT, Segments, Table, set_wait
 
 

@@ -10,12 +10,12 @@ from polycnc.kernel._path import (
     RAPID_S,
     RUNNING,
     SEGMENTS,
+    SPEED_PEAK,
     TOP_SPEED,
     WAIT_S,
     Paths,
     slot,
 )
-from polycnc.kernel._ramps import SPEED_PEAK
 from polycnc.kernel._segments import RAPID, TURN, WAIT, Segments
 
 

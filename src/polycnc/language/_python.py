@@ -1,6 +1,6 @@
 """Python source made of pieces: expressions that know when they need parentheses, lines that know where they stem from.
 
-What a program becomes is compiled once, runs with no builtins but those that its language lends, and every error
+What a program becomes is compiled once, runs with no builtins but those of its language, and every error
 raised in it can be led back to the place in the program that its Python line was made from.
 """
 
@@ -58,8 +58,8 @@ def infix(left: Python, operator: str, right: Python) -> Python:
     power = _INFIX[operator]
     least = power + 1 if power == _COMPARISON else power
     before = left.text if left.power >= least else f"({left.text})"
-    behind = right.text if right.power > power else f"({right.text})"
-    return Python(f"{before} {operator} {behind}", power)
+    after = right.text if right.power > power else f"({right.text})"
+    return Python(f"{before} {operator} {after}", power)
 
 
 def prefix(operator: str, operand: Python) -> Python:

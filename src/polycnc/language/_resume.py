@@ -86,7 +86,7 @@ def _resumed(traced: Traced[Place], line: int, names: Collection[str], *, again:
 
 
 class _Rest:
-    """Find what is left of blocks of statements behind the `yield` of a line."""
+    """Find what is left of blocks of statements after the `yield` of a line."""
 
     def __init__(self, line: int, *, again: bool) -> None:
         self._line = line

@@ -112,7 +112,7 @@ class Tokens:
         self.jump(start)
 
     @property
-    def behind(self) -> int:
+    def after(self) -> int:
         """Return the offset at which the token before the present one ends."""
         return self._before.at + len(self._before.text)
 
@@ -124,7 +124,7 @@ class Tokens:
     def step(self) -> Token:
         """Return the token and go to the next one."""
         self._before = token = self.token
-        self.token = next(self._row, None) or self._lexicon.read(self._text, self.behind, self._end)[0]
+        self.token = next(self._row, None) or self._lexicon.read(self._text, self.after, self._end)[0]
         return token
 
     def jump(self, at: int) -> None:

@@ -74,7 +74,7 @@ class AsyncHost(Generic[D]):
         """
         loop = asyncio.get_running_loop()
         published = asyncio.Event()
-        asked = False  # however fast the host publishes, the loop is told once for each status that it takes
+        asked = False  # however fast the host publishes, the loop is woken once for each status that it takes
 
         def told() -> None:
             nonlocal asked

@@ -29,7 +29,7 @@ class HostError(PolycncError):
 
 
 class Host(Generic[D]):
-    """Let the time of `device` pass in a thread of its own, at the pace of a lent wall clock.
+    """Let the time of `device` pass in a thread of its own, at the pace of a wall clock that is passed in.
 
     `rate` is seconds of the device for each second outside, 0 to begin with it frozen; `pace` changes it while it runs.
     `events` are the reasons of the device that end a jump of the pace. At least every `slice_s` commands are looked at.

@@ -1,4 +1,4 @@
-"""How fast a device's time follows a wall clock that is lent; the pace can change while the device runs."""
+"""How fast a device's time follows a wall clock that is passed in; the pace can change while the device runs."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ _FORGIVEN = 1e-9  # cycles that rounding may be short of
 
 
 class Wall(Protocol):
-    """The wall clock of the outside, lent to what is below it."""
+    """The wall clock of the outside, for what is below it."""
 
     def now_s(self) -> float:
         """Return a time that never runs back (s)."""

@@ -20,7 +20,7 @@ POWER = "power"
 def powers(rows: Floats, tags: npt.NDArray[np.int64], records: BlockRecords, config: MachineConfig) -> Floats:
     """Return the power [cycles] in units of S for rows of the recorder and the tags of their blocks.
 
-    It is 0 at rapid and behind M5; with M3 it stays at S, with M4 it is S times speed over programmed feed.
+    It is 0 at rapid and after M5; with M3 it stays at S, with M4 it is S times speed over programmed feed.
     """
     starts = np.flatnonzero(np.diff(tags, prepend=~tags[:1]))
     said = np.zeros((len(starts), 3))

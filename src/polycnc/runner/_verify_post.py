@@ -61,7 +61,7 @@ class PostVerification:
 
     `off_path` is the farthest that a feed move goes off the tool path, `missed` the farthest that a point of the
     tool path stays from the machine's way, `detour_mm` how far rapids leave the straight line, which is allowed.
-    `rapid_cuts` counts records with feed that the program goes along by rapid. `kinked_arcs` of the tool path turn
+    `rapid_cuts` counts records with feed that the program follows by rapid. `kinked_arcs` of the tool path turn
     back on the spot where straight feed moves meet them, and `smooth_arcs` do not: an arc that is read with the wrong
     sense does, so more of the former are no proof. `run` is the run on the machine. `compared` says which axes were
     compared; `tool_axis_deg` is the greatest angle between the tool axes where a record ends, on `tool_axis_line`.

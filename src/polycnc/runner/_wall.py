@@ -1,4 +1,4 @@
-"""The computer's clock, for whoever lends one to a machine (`Elapsed`, `RealTime`, `Host`)."""
+"""The computer's clock, for whoever passes one to a machine (`Elapsed`, `RealTime`, `Host`)."""
 
 from __future__ import annotations
 

@@ -193,7 +193,7 @@ class Cutting:
     def _note_idle(self, ways: Ways, cut: Floats, outlines: _Outlines) -> None:
         """Count the time of feeding that removes nothing, and note blocks that feed through air for long.
 
-        A tool that goes along what it has cut is not in the air: it would cut if it were two cells lower.
+        A tool that follows what it has cut is not in the air: it would cut if it were two cells lower.
         """
         moves = np.any(ways.places[1:] != ways.places[:-1], axis=1)
         duration = np.where(moves & (cut[:, VOLUME_MM3] <= 0.0), ways.duration_s, 0.0)

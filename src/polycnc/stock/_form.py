@@ -142,7 +142,7 @@ class Form:
 
 
 def file_of(text: str) -> Path | None:
-    """Return the file that a body or fixture is read from, None for one that is told by numbers."""
+    """Return the file that a body or fixture is read from, None for one that numbers describe."""
     name = _file_of(text)[0]
     return Path(name) if name.lower().endswith(".stl") else None
 

@@ -12,8 +12,6 @@ from polycnc.stock._stock import Box, check_cell
 
 MOST_VOXELS = 200_000_000
 """Of a body: as many bytes."""
-VOXELS_ACROSS = 200
-"""How many there are along the longest side where no resolution is given."""
 
 
 class Voxels:

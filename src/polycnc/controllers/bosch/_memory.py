@@ -11,7 +11,7 @@ from polycnc.nc.cpl import CharacterField, Field, PermanentMemory
 
 DECLARATIONS = ("wmhperm.dat", "anwperm.dat")
 FEPROMS = ("usrfep", "fep")
-"""Where the control looks for its own files behind its root: the folders of the user FEPROM and of the FEPROM."""
+"""Where the control looks for its own files after its root: the folders of the user FEPROM and of the FEPROM."""
 _AREA = "cpl.permanent"
 
 

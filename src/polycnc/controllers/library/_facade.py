@@ -174,7 +174,7 @@ class Facade(Generic[S]):
         signature = _public(body, first, hint)
         count, skipped = len(signature.parameters), 0 if first is None else 1
         takes = [(place, each.take) for place, each in enumerate(function.passed)]
-        before, behind = takes[:skipped], takes[skipped:]
+        before, after = takes[:skipped], takes[skipped:]
         default, name = self.default, body.__name__
 
         def call(session: S, /, *given: Any, **named: Any) -> Any:
@@ -193,7 +193,7 @@ class Facade(Generic[S]):
                     for place, take in before:
                         values[place] = take(values[place], session)
                     to = reach(session, values)
-                    for place, take in behind:
+                    for place, take in after:
                         values[place] = take(values[place], to)
                     return body(to, *values[skipped:])
                 except Refused as refusal:

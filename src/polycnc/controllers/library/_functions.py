@@ -153,14 +153,14 @@ def function_of(body: Callable[..., Any], first: Argument | None, code: str) -> 
     arguments += [passed(name, hints[name]) for name in names]
     elements = get_args(result) if get_origin(result) is tuple else (result,)
     void = result is type(None) or _told(elements[0], Out) is not None
-    behind = elements[0 if void else 1 :] if result is not type(None) else ()
-    for each in behind:
+    returned_types = elements[0 if void else 1 :] if result is not type(None) else ()
+    for each in returned_types:
         if (out := _told(each, Out)) is not None:
             place = [argument.name for argument in arguments].index(out.before) if out.before else None
             arguments.insert(len(arguments) if place is None else place, _returned(out, each))
     made = tuple(arguments)
-    if sum(each.returned for each in made) != len(behind):
-        raise TypeError(f"{body.__name__} returns {len(behind)} values that are not all arguments")
+    if sum(each.returned for each in made) != len(returned_types):
+        raise TypeError(f"{body.__name__} returns {len(returned_types)} values that are not all arguments")
     for each in made:
         if each.length_of and each.length_of not in (other.name for other in made):
             raise TypeError(f"{body.__name__}: there is no {each.length_of} that {each.name} counts")

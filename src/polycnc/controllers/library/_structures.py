@@ -204,7 +204,7 @@ class _Array:
     def __set__(self, memory: Any, value: Any) -> None:
         try:
             made = self._made(value)
-            if self._element.python is str:  # else what the last one left behind its zero would stay
+            if self._element.python is str:  # else what the last one left after its zero would stay
                 ctypes.memset(ctypes.addressof(memory) + self._field.offset, 0, self._field.size)
             self._field.__set__(memory, made)
         except (TypeError, ValueError, IndexError, OverflowError) as error:

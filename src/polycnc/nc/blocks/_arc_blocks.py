@@ -29,7 +29,7 @@ from polycnc.nc.modal._modal import (
     length_scale,
 )
 
-_ARC_TROUBLE = {
+_ARC_PROBLEMS = {
     ARC_NO_RADIUS: (
         "the arc has no radius",
         "Give the way from the start to the centre (I J K), or a radius R that is not 0.",
@@ -173,7 +173,7 @@ def _circle(
         found = arc_by_center(*ends, at[0], at[1], clockwise, tolerance, float(modal.real[ARC_RELATIVE]))
     status, center_p, center_q, sweep, off = found
     if status != ARC_OK:
-        what, hint = _ARC_TROUBLE[status]
+        what, hint = _ARC_PROBLEMS[status]
         raise block.problem(
             what.format(off=off), hint, block.words.first(*("R" if radius is not None else "IJK"))
         )

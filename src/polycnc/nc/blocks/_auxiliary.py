@@ -87,13 +87,11 @@ def functions(block: BlockContext) -> None:
 
 
 def laser_power(block: BlockContext) -> None:
-    """Let no line before a change of a laser's power be one with lines behind it.
+    """Let the power of a laser change between two moves without a stop.
 
     Raises:
         ProgramError: the power follows the speed of moves that are given a time.
     """
-    if not _has_laser(block):
-        return
     before, spindle = block.before.spindle, block.after.spindle
     follows = spindle.direction < 0 and spindle.speed > 0.0
     if follows and block.after.modal.whole[FEED_MODE] != FEED_PER_MINUTE and block.move_word is not None:

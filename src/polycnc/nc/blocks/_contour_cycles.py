@@ -14,7 +14,7 @@ from polycnc.nc.blocks import _turning_moves as turns
 from polycnc.nc.blocks._block import BlockContext
 from polycnc.nc.blocks._channel_state import ChannelState
 from polycnc.nc.blocks._contours import (
-    ContourTrouble,
+    ContourProblem,
     contour_blocks,
     holds_cycle,
     names_x_and_z,
@@ -95,10 +95,11 @@ def _moves_only(g: GWord) -> tuple[str, str]:
 def _contour(block: BlockContext, g: GWord) -> list[Block]:
     """Return the blocks of the contour; where they follow here, the program goes on after them."""
     numbers = _contour_numbers(block, g)
-    text, here, rules = block.text, block.block.end, block.rules.text_rules
+    text, rules = block.text, block.rules.text_rules
+    here = text.next_line(block.block.offset)
     begin = numbered_block(text, numbers[0], here, len(text), rules)
     blocks = contour_blocks(text, begin or numbered_block(text, numbers[0], 0, here, rules), numbers, rules)
-    if isinstance(blocks, ContourTrouble):
+    if isinstance(blocks, ContourProblem):
         raise block.problem(*blocks, g.word)
     if any(each.flags & STATEMENT for each in blocks):
         raise block.problem(
@@ -106,7 +107,8 @@ def _contour(block: BlockContext, g: GWord) -> list[Block]:
         )
     if any(holds_cycle(each, block.dialect) for each in blocks):
         raise block.problem(*_moves_only(g), g.word)
-    block.goes_on = Place(text, blocks[-1].end, blocks[-1].line + 1) if begin else None
+    after = text.next_line(blocks[-1].offset)
+    block.goes_on = Place(text, after, blocks[-1].line + 1) if begin else None
     return [each for each in blocks if each.words]
 
 

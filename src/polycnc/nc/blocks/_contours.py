@@ -17,7 +17,7 @@ _CYCLES = of_family(Family.TURNING_CYCLE, Family.CONTOUR_CYCLE)
 _COMPENSATION = (Action.COMP_LEFT, Action.COMP_RIGHT, Action.COMP_OFF)
 
 
-class ContourTrouble(NamedTuple):
+class ContourProblem(NamedTuple):
     """What is wrong with a contour, and what to do."""
 
     what: str
@@ -36,21 +36,21 @@ def numbered_block(text: ProgramText, number: int, begin: int, end: int, rules: 
 
 def contour_blocks(
     text: ProgramText, begin: Block | None, numbers: tuple[int, int], rules: TextRules
-) -> list[Block] | ContourTrouble:
+) -> list[Block] | ContourProblem:
     """Return the blocks from `begin`, the first of the two numbers, to the last one."""
     first, last = numbers
     if begin is None:
-        return ContourTrouble(f"there is no block N{first}", "P names the first block of the contour.")
+        return ContourProblem(f"there is no block N{first}", "P names the first block of the contour.")
     blocks = [begin]
     while not (blocks[-1].flags & STATEMENT or _is_numbered(blocks[-1], last)):
-        block = blocks[-1]
-        if block.end >= len(text) or len(blocks) > MOST_CONTOUR_BLOCKS:
-            return ContourTrouble(
+        after = text.next_line(blocks[-1].offset)
+        if after >= len(text) or len(blocks) > MOST_CONTOUR_BLOCKS:
+            return ContourProblem(
                 f"there is no block N{last} after N{first}", "Q names the last block of the contour."
             )
-        blocks.append(scan_block(text, block.end, block.line + 1, rules))
+        blocks.append(scan_block(text, after, blocks[-1].line + 1, rules))
     if blocks[-1].flags & STATEMENT:
-        return ContourTrouble(
+        return ContourProblem(
             "a contour that is cut apart by statements is not supported yet",
             "Write the contour in plain words.",
         )

@@ -51,7 +51,7 @@ _TURN = {1: "M3", -1: "M4"}
 MOST_HOLES = 9999
 _BACK_BORE = "cycle_back_bore"
 # The words that most errors of a cycle are about.
-_TROUBLE_LETTERS = {"upwards": "RZ", "peck": "Q", "back": "K", "dwell": "P"}
+_LETTERS_OF_REASON = {"upwards": "RZ", "peck": "Q", "back": "K", "dwell": "P"}
 
 
 def begin(block: BlockContext, g: GWord) -> None:
@@ -105,7 +105,7 @@ def moves(block: BlockContext) -> list[QueueItem]:
             levels = levels.absolute(place.initial_mm)
         steps = expand_cycle(cycle.action, levels, place, settings, code=code)
     except CycleError as error:
-        at = words.first(*_TROUBLE_LETTERS.get(error.reason, "")) or block.move_word
+        at = words.first(*_LETTERS_OF_REASON.get(error.reason, "")) or block.move_word
         raise block.problem(error.what, error.hint, at) from None
     return _items(block, steps, start, hole, axes) if steps else []
 

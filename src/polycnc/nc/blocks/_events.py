@@ -22,7 +22,7 @@ class Event:
 
     `line` and `tag` are the block's line and the reference of its record. `default_s` is what the machine file says
     that the function takes, where the queue does not wait for it (`QueueWriter.answers`). `message` is what the
-    operator is told there. Preparation continues after a `barrier` when it has been answered.
+    operator is shown there. Preparation continues after a `barrier` when it has been answered.
     """
 
     word: str

@@ -20,7 +20,7 @@ from polycnc.nc.blocks._limits import check_path
 from polycnc.nc.blocks._messages import Messages
 from polycnc.nc.blocks._moves import Arc, Line, QueueItem, Stop, Wait
 from polycnc.nc.blocks._not_blocks import NotBlocks
-from polycnc.nc.blocks._outcomes import NEXT, Control, Outcome, Problem
+from polycnc.nc.blocks._outcomes import NEXT, Continuation, Outcome, Problem
 from polycnc.nc.blocks._queue import QueueWriter
 from polycnc.nc.blocks._steps import take_steps
 from polycnc.nc.blocks._travel import up_to_limits
@@ -92,7 +92,7 @@ class Interpreter:
             self._stop_at_limit(context)
         self._commit(context)
         if context.goes_on is not None and context.outcome is NEXT:
-            return Outcome(Control.GO_ON, place=context.goes_on)
+            return Outcome(Continuation.GO_ON, place=context.goes_on)
         return context.outcome
 
     def _tell_of_probe(self) -> None:
@@ -105,8 +105,8 @@ class Interpreter:
         if probe is None or not probe.code:
             return
         self.state.probe = replace(probe, code="")
-        if (trouble := probe.trouble) is not None:
-            what, hint = trouble
+        if (problem := probe.problem) is not None:
+            what, hint = problem
             raise ProgramError(what, position=self._text.position(probe.place), hint=hint)
 
     def _commit(self, block: BlockContext) -> None:

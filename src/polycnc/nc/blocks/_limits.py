@@ -36,7 +36,7 @@ def check(block: BlockContext, point: Point, what: str = "would go to") -> None:
     state, whole = block.after, block.after.modal.whole
     compensated = state.side != 0 or state.compensation.active
     later = (int(whole[AXIS_P]), int(whole[AXIS_Q])) if compensated else ()
-    for index, text, hint in _limit_troubles(state, point, what, later):
+    for index, text, hint in _limit_problems(state, point, what, later):
         axis = state.axis_names[index]
         error = block.problem(text, hint, block.words.first(axis))
         error.limit = _limit(block.rules.stops_at_limits, state, index, point)
@@ -58,7 +58,7 @@ def check_path(state: ChannelState, item: Move, *, stops_at_limits: bool = False
             f"with radius compensation {what}", reason="time", line=item.line, hint=_TOO_LONG_HINT
         )
     for point, what in points(item):
-        for index, text, hint in _limit_troubles(state, point, what):
+        for index, text, hint in _limit_problems(state, point, what):
             error = CompensationError(
                 f"with radius compensation {text}", reason="limit", line=item.line, hint=hint
             )
@@ -106,7 +106,7 @@ def _slow_word(block: BlockContext, item: QueueItem) -> Word | None:
     return block.words.first("F") or block.move_word
 
 
-def _limit_troubles(
+def _limit_problems(
     state: ChannelState, point: Point, what: str, but: tuple[int, ...] = ()
 ) -> Iterator[tuple[int, str, str]]:
     """Yield the axes whose limits a point passes, what is wrong and what to do."""

@@ -113,7 +113,7 @@ class Wait:
     when the next move begins.
 
     A `stop` is a point where the program may stand: then preparation goes on when whoever runs the path says so.
-    `message` is what the operator is told there. One `with_spindle` is part of a thread, see `Feed`.
+    `message` is what the operator is shown there. One `with_spindle` is part of a thread, see `Feed`.
     """
 
     duration_s: float

@@ -136,7 +136,9 @@ def set_position(block: BlockContext, g: GWord) -> None:
     refuse_compensation(block, g, side=False)
     if block.after.frame.active and not block.dialect.turns_work:
         raise block.problem(
-            f"G{g.code} while positions are turned, scaled or mirrored", "Cancel that first.", g.word
+            f"G{g.code} while positions are turned, scaled or mirrored",
+            "Cancel rotation, scaling and mirroring first.",
+            g.word,
         )
     values = motion.axis_words(block)
     if not values and "S" not in block.words.by_letter:  # S is the spindle's clamp

@@ -12,7 +12,7 @@ Problem = tuple[str, str, str]
 """What is wrong, what to do and its code, of something that is not a matter of the block's words alone."""
 
 
-class Control(Enum):
+class Continuation(Enum):
     """What comes after a block."""
 
     NEXT = "next"
@@ -27,7 +27,7 @@ class Control(Enum):
 class Outcome:
     """Say how the program goes on; a call names the sub-program and how often it runs, GO_ON a place."""
 
-    control: Control = Control.NEXT
+    continuation: Continuation = Continuation.NEXT
     program: int = 0
     repeats: int = 1
     place: Place | None = None

@@ -52,7 +52,7 @@ def polar_words(block: BlockContext) -> dict[int, float]:
 
 
 def further_polar_places(block: BlockContext, count: int) -> tuple[tuple[float, float], ...]:
-    """Return where the holes of a row behind its first are (machine mm): each further out and further round.
+    """Return where the holes of a row after its first are (machine mm): each further out and further round.
 
     There are none where the block holds positions, or no polar ones; the words are not taken.
     """

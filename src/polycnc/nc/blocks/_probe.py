@@ -26,7 +26,7 @@ class Probe:
     at_once: bool = False
 
     @property
-    def trouble(self) -> tuple[str, str] | None:
+    def problem(self) -> tuple[str, str] | None:
         """What is wrong with the move, and what to do; None if nothing is."""
         if self.at_once:
             if self.leaves:

@@ -3,16 +3,16 @@
 from __future__ import annotations
 
 from polycnc.nc.blocks._block import BlockContext
-from polycnc.nc.blocks._outcomes import NEXT, Control, Outcome
+from polycnc.nc.blocks._outcomes import NEXT, Continuation, Outcome
 from polycnc.nc.blocks._words import whole_number
 from polycnc.nc.modal._actions import MAction
 from polycnc.nc.text._scan_plain import Word
 
 _OUTCOMES = {
-    MAction.PROGRAM_END: Outcome(Control.END),
-    MAction.PROGRAM_STOP: Outcome(Control.STOP),
-    MAction.OPTIONAL_STOP: Outcome(Control.STOP),
-    MAction.SUB_RETURN: Outcome(Control.RETURN),
+    MAction.PROGRAM_END: Outcome(Continuation.END),
+    MAction.PROGRAM_STOP: Outcome(Continuation.STOP),
+    MAction.OPTIONAL_STOP: Outcome(Continuation.STOP),
+    MAction.SUB_RETURN: Outcome(Continuation.RETURN),
 }
 
 
@@ -40,9 +40,9 @@ def _call(block: BlockContext, code: str, at: Word) -> Outcome:
     repeats = 1 if l_word is None else whole_number(l_word, "a number of repetitions", block.problem)
     if l_word is None and program > 9999 and block.dialect.sub_program.repeats_in_p:
         repeats, program = divmod(program, 10_000)
-    if trouble := block.rules.call_problem(program, block.text, p_word.place):
-        what, hint, number = trouble
+    if problem := block.rules.call_problem(program, block.text, p_word.place):
+        what, hint, number = problem
         error = block.problem(what, hint, p_word)
         error.code = number
         raise error
-    return Outcome(Control.CALL, program, repeats)
+    return Outcome(Continuation.CALL, program, repeats)

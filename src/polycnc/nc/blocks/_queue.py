@@ -10,9 +10,11 @@ from typing import NamedTuple
 import numpy as np
 
 from polycnc.kernel import (
+    GEO_WAIT_S,
     NOT_MERGED,
     RAPID,
     STOP,
+    WAIT,
     WITH_SPINDLE,
     AxisLimits,
     Paths,
@@ -22,13 +24,13 @@ from polycnc.kernel import (
     append_spline,
     append_wait,
     close_line,
-    free_slots,
     merge_line,
 )
 from polycnc.nc.blocks._events import Event, EventRun, PendingEvents
 from polycnc.nc.blocks._moves import Arc, Feed, Line, QueueItem, Spline, Stop, Wait
 
 NO_EVENT = -1
+_LOOKED_AT = 8
 
 
 class WriterSnapshot(NamedTuple):
@@ -151,6 +153,26 @@ class QueueWriter:
         if self.marks is not None:
             self.marks.append((int(self.paths.row[self.path]["tail"]), tag))
 
+    @property
+    def free(self) -> int:
+        """How many segments the queue still takes."""
+        row = self.paths.row[self.path]
+        return int(row["capacity"] - (row["tail"] - row["head"]))
+
+    def has_room(self, reserve: int) -> bool:
+        """Tell whether blocks may be prepared: nothing waits for room, and no stop for its execution."""
+        return not self.backlog and not self.stops and self.free > reserve
+
+    def takes_time(self, since: int) -> bool:
+        """Tell whether what has been queued since the queue had this end takes time: waits of no length take none."""
+        row = self.paths.row[self.path]
+        end = int(row["tail"])
+        for count in range(end - 1, max(since, end - _LOOKED_AT) - 1, -1):
+            k = row["base"] + count % row["capacity"]
+            if self.seg.row[k]["kind"] != WAIT or self.seg.geo[k, GEO_WAIT_S] > 0.0:
+                return True
+        return end - since > _LOOKED_AT
+
     def _append(self, item: QueueItem) -> None:
         if not isinstance(item, Line):
             self._close_line()
@@ -170,10 +192,10 @@ class QueueWriter:
         One more is for the corner of a line that is complete.
         """
         needed = 2 + (len(item.events) if isinstance(item, Wait) else 1)
-        return free_slots(self.paths, self.path) >= needed
+        return self.free >= needed
 
     def _put_line(self, item: Line) -> None:
-        speed = math.inf if item.rapid else self._speed(item.feed, self._line_length(item))
+        speed = math.inf if item.rapid else _speed(item.feed, self._line_length(item))
         flags = (
             (RAPID if item.rapid else 0)
             | (STOP if item.exact_stop else 0)
@@ -201,7 +223,7 @@ class QueueWriter:
             item.center[0],
             item.center[1],
             item.sweep_rad,
-            self._speed(item.feed, self._arc_length(item)),
+            _speed(item.feed, self._arc_length(item)),
             STOP if item.exact_stop else 0,
             item.tag,
         )
@@ -215,7 +237,7 @@ class QueueWriter:
             *item.plane,
             np.array(item.span),
             item.length_mm,
-            self._speed(item.feed, item.length_mm),
+            _speed(item.feed, item.length_mm),
             STOP if item.exact_stop else 0,
             item.tag,
         )
@@ -323,7 +345,7 @@ class QueueWriter:
         ]
         return math.sqrt((radius * item.sweep_rad) ** 2 + sum(rest))
 
-    @staticmethod
-    def _speed(feed: Feed, length: float) -> float:
-        """Return the path speed; a feed by time needs the length of the move."""
-        return length / feed.duration_s if feed.duration_s > 0.0 else feed.speed_mm_s
+
+def _speed(feed: Feed, length: float) -> float:
+    """Return the path speed; a feed by time needs the length of the move."""
+    return length / feed.duration_s if feed.duration_s > 0.0 else feed.speed_mm_s

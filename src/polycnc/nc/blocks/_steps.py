@@ -142,7 +142,8 @@ def functions(block: BlockContext) -> None:
     """Carry out M codes that come before the motion, and let a laser's power change."""
     if block.words.m:
         auxiliary.functions(block)
-    auxiliary.laser_power(block)
+    if block.after.machine.spindle.laser:
+        auxiliary.laser_power(block)
 
 
 def length(block: BlockContext) -> None:

@@ -115,7 +115,11 @@ def set_tool(block: BlockContext, g: GWord, table: int, number: int) -> None:
             )
     values = axis_words(block)
     if table != 1 and state.frame.active:
-        raise block.problem(f"G{g.code} L{table} while positions are turned", "Cancel that first.", g.word)
+        raise block.problem(
+            f"G{g.code} L{table} while positions are turned",
+            "Cancel rotation, scaling and mirroring first.",
+            g.word,
+        )
     if table == 10:
         ways = modal.position - (modal.offset - state.tool_offset)
     elif table == 11:

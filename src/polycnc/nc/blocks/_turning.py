@@ -175,7 +175,7 @@ def _check_steady(pieces: Sequence[Piece], x_way: float, z_way: float) -> None:
 
 
 def check_top(contour: Sequence[Piece], x_way: float) -> None:
-    """Refuse a contour that goes along Z beyond where the cycle begins: the way back would cross the part.
+    """Refuse a contour that goes in Z beyond where the cycle begins: the way back would cross the part.
 
     Raises:
         TurningError: It does.

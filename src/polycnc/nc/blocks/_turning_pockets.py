@@ -104,7 +104,7 @@ def _x_way(pieces: Sequence[Piece], corner: Point) -> float:
 
 
 def _z_way(pieces: Sequence[Piece], first: int) -> float:
-    """Return which way the contour goes along the cuts; the way to it must not go against that.
+    """Return which way the contour follows the cuts; the way to it must not go against that.
 
     Raises:
         TurningError: It turns back, or does not go anywhere.

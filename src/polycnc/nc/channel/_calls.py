@@ -161,7 +161,7 @@ class Calls:
         self._reader.jump(place, self.bounds.end)
 
     def enter(self, program: int | ProgramText, repeats: int, line: int, arguments: object = None) -> None:
-        """Begin a sub-program that `trouble` had nothing against, called on `line`; nothing for no repeats."""
+        """Begin a sub-program that can be called, from `line`; nothing for no repeats."""
         begin = self._find(program)
         assert begin is not None
         if repeats < 1:
@@ -177,9 +177,9 @@ class Calls:
         Raises:
             ProgramError: it cannot be called.
         """
-        trouble = self.trouble(call.program, text, call.offset)
-        if trouble is not None:
-            what, hint, code = trouble
+        problem = self.problem(call.program, text, call.offset)
+        if problem is not None:
+            what, hint, code = problem
             raise ProgramError(what, position=text.position(call.offset), hint=hint, code=code)
         self.enter(call.program, call.repeats, call.line, call.arguments)
 
@@ -230,19 +230,19 @@ class Calls:
         self._entered = tuple(calls)
         self.stack = self._entered + self.within
 
-    def trouble(self, program: int | ProgramText, text: ProgramText, offset: int) -> Problem | None:
+    def problem(self, program: int | ProgramText, text: ProgramText, offset: int) -> Problem | None:
         """Return what is against a call that stands at byte `offset` of `text`, None if nothing is.
 
         Where errors are collected, a call that has been refused once is so ever after: a program that calls itself k
         times would else be gone through k to the power of the depth times.
         """
         site = (text.name, offset)
-        trouble = self._refused.get(site) or self._trouble(program)
-        if trouble is not None and self._errors.collects:
-            self._refused[site] = trouble
-        return trouble
+        problem = self._refused.get(site) or self._problem_of(program)
+        if problem is not None and self._errors.collects:
+            self._refused[site] = problem
+        return problem
 
-    def _trouble(self, program: int | ProgramText) -> Problem | None:
+    def _problem_of(self, program: int | ProgramText) -> Problem | None:
         deepest = self._dialect.sub_program.depth
         # Calls with arguments have their own limit, which the language watches.
         if sum(running.arguments is None for running in self._all) > deepest:

@@ -20,12 +20,11 @@ from polycnc.nc.channel._channel_snapshot import ChannelSnapshot
 from polycnc.nc.channel._errors import Errors
 from polycnc.nc.channel._line_check import LineCheck
 from polycnc.nc.channel._options import ChannelOptions
-from polycnc.nc.channel._preparation import Preparation
+from polycnc.nc.channel._preparation import Preparation, Turns
 from polycnc.nc.channel._prepared import Prepared
 from polycnc.nc.channel._reader import Reader
 from polycnc.nc.channel._search import Search
 from polycnc.nc.channel._sub_programs import Library, SubPrograms
-from polycnc.nc.channel._turns import Turns
 from polycnc.nc.dialect._dialect import Dialect
 from polycnc.nc.modal._modal_snapshot import ModalSnapshot
 from polycnc.nc.modal._suppressed import Suppressed
@@ -92,7 +91,7 @@ class Channel:
         self._search = search = Search(calls, reader, language)
         self._reference = _reference(self.records, reader, calls)
         self.interpreter = Interpreter(
-            dialect, self.state, self.messages, self.writer, calls.trouble, self._reference
+            dialect, self.state, self.messages, self.writer, calls.problem, self._reference
         )
         self._preparation = Preparation(
             reader,

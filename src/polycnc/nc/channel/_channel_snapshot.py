@@ -22,8 +22,8 @@ from polycnc.nc.blocks._queue import WriterSnapshot
 from polycnc.nc.blocks._tables import SavedTables
 from polycnc.nc.blocks._tip import TipShift
 from polycnc.nc.blocks._turning import Turning
+from polycnc.nc.channel._preparation import SavedTurns
 from polycnc.nc.channel._running import Back, SavedCall
-from polycnc.nc.channel._turns import SavedTurns
 from polycnc.nc.modal._actions import Family
 from polycnc.nc.modal._frame import Frame, Polar, Rotation
 from polycnc.nc.modal._modal_snapshot import ModalSnapshot, Spindle

@@ -11,7 +11,7 @@ from polycnc.nc.blocks._channel_state import ChannelState
 from polycnc.nc.blocks._interpreter import Interpreter
 from polycnc.nc.blocks._messages import Messages
 from polycnc.nc.blocks._moves import QueueItem
-from polycnc.nc.blocks._outcomes import Control, Problem
+from polycnc.nc.blocks._outcomes import Continuation, Problem
 from polycnc.nc.blocks._queue import QueueWriter
 from polycnc.nc.blocks._tables import ProgramTables
 from polycnc.nc.dialect._dialect import Dialect
@@ -118,7 +118,7 @@ class LineCheck:
             while offset < len(text):
                 block = scan_block(text, offset, line, self._rules)
                 self._take(text, block, skip_levels)
-                offset, line = block.end, line + 1
+                offset, line = text.next_line(offset), line + 1
         except ProgramError:
             self.state.take(before)
             self.state.tables.restore(tables)
@@ -145,9 +145,11 @@ class LineCheck:
         if block.is_blank or self._words_only or not self._sure or block.skip_level in skip_levels:
             return
         outcome = self._interpreter.execute(text, block)
-        if outcome.control in (Control.END, Control.RETURN):
+        if outcome.continuation in (Continuation.END, Continuation.RETURN):
             self.ended_at = block.line
-        elif outcome.control is Control.CALL:  # what it leaves behind is known when it has been executed
+        elif (
+            outcome.continuation is Continuation.CALL
+        ):  # what it leaves behind is known when it has been executed
             self._sure = False
 
 

@@ -1,19 +1,25 @@
-"""The preparation of a program: one block after the other, from its text or its language, until there is no room."""
+"""The preparation of a program: one block after the other, from its text or its language, until there is no room.
+
+How much is prepared before time has to pass is counted for each cycle of the clock, never for each call, so it does not
+matter how time is cut into calls.
+"""
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 from polycnc.errors import ProgramError
+from polycnc.machine import Clock
 from polycnc.nc.blocks._interpreter import Interpreter
 from polycnc.nc.blocks._moves import Stop, Wait
-from polycnc.nc.blocks._outcomes import Control
+from polycnc.nc.blocks._outcomes import Continuation
 from polycnc.nc.channel._calls import Calls
 from polycnc.nc.channel._errors import Errors
 from polycnc.nc.channel._options import ChannelOptions
 from polycnc.nc.channel._prepared import Prepared
 from polycnc.nc.channel._reader import Reader
 from polycnc.nc.channel._search import Search
-from polycnc.nc.channel._turns import BARREN_TURNS, PLAIN_PER_TURN, Turns
-from polycnc.nc.fast._plain_blocks import NOT_PLAIN, QUEUE_FULL
+from polycnc.nc.fast._plain_blocks import NOT_PLAIN, QUEUE_FULL, RESERVE
 from polycnc.nc.sources._block_source import (
     CallProgram,
     Drain,
@@ -28,6 +34,78 @@ from polycnc.nc.text._place import Place
 from polycnc.nc.text._program import ProgramText
 from polycnc.nc.text._scan import MESSAGE, PLAIN
 from polycnc.nc.text._scan_plain import Block
+
+TURNS_PER_CYCLE = 2000
+"""Blocks with something for the queue that are prepared in one control cycle at the most."""
+BARREN_TURNS = 50
+"""What a block counts that takes no time, or a call: of such ones there are 40 in a cycle."""
+PLAIN_PER_TURN = 64
+"""Plain blocks that the compiled kernel prepares in the time of one turn."""
+
+
+class SavedTurns(NamedTuple):
+    """What was prepared in which cycle, to go back to; see `Turns`."""
+
+    cycle: int
+    taken: int
+    paused: bool
+    looks: tuple[tuple[str, int], ...]
+
+
+class Turns:
+    """Count what is prepared in the present cycle of `clock`.
+
+    `paused` is set while preparation has done all that it may in a cycle and wants to go on in the next one.
+    """
+
+    def __init__(self, clock: Clock) -> None:
+        self._clock = clock
+        self._cycle = -1
+        self._taken = 0
+        self._looks: set[tuple[str, int]] = set()
+        self.paused = False
+
+    def begin(self) -> bool:
+        """Take note that preparation goes on; False where nothing more is prepared in this cycle."""
+        cycle = self._clock.cycles
+        if self._cycle == cycle:
+            return not self.paused
+        self._cycle, self._taken = cycle, 0
+        if not self.paused:
+            self._looks.clear()
+        self.paused = False
+        return True
+
+    def take(self, turns: int = 1) -> None:
+        """Count turns; after the last one of a cycle preparation pauses."""
+        self._taken += turns
+        if self._taken >= TURNS_PER_CYCLE:
+            self.pause()
+
+    def pause(self) -> None:
+        """Let preparation go on in the next cycle."""
+        self._looks.clear()
+        self.paused = True
+
+    def look(self, program: str, line: int) -> None:
+        """Count a block that reads what only cycles change; where it has done so in this one, preparation pauses."""
+        place = program, line
+        if place in self._looks:
+            self.pause()
+        self._looks.add(place)  # what pauses now is read with the next cycle, and is its look
+
+    def forget(self) -> None:
+        """Begin anew, as if a cycle had passed."""
+        self.restore(SavedTurns(-1, 0, False, ()))
+
+    def snapshot(self) -> SavedTurns:
+        """Return what has been counted, to go back to."""
+        return SavedTurns(self._cycle, self._taken, self.paused, tuple(sorted(self._looks)))
+
+    def restore(self, saved: SavedTurns) -> None:
+        """Go back to a snapshot."""
+        self._cycle, self._taken, self.paused = saved.cycle, saved.taken, saved.paused
+        self._looks = set(saved.looks)
 
 
 class Preparation:
@@ -66,6 +144,7 @@ class Preparation:
     def fill(self, blocks: int | None, *, compiled: bool) -> None:
         """Prepare blocks until there is no room, the program has ended or waits; `blocks` more at the most."""
         reader, prepared, turns = self._reader, self._prepared, self.turns
+        writer = prepared.writer
         if not turns.begin():
             return
         if not self.begun:
@@ -75,10 +154,10 @@ class Preparation:
                 self.close()
                 return
             self._calls.begin()
-        if prepared.writer.backlog and not self._catch_up():
+        if writer.backlog and not self._catch_up():
             return
         most = None if blocks is None else reader.blocks + blocks
-        while not self.over and (most is None or reader.blocks < most) and prepared.has_room():
+        while not self.over and (most is None or reader.blocks < most) and writer.has_room(RESERVE):
             if turns.paused:
                 return
             if reader.at_end:
@@ -92,7 +171,7 @@ class Preparation:
                 return
             if reason == NOT_PLAIN:
                 self._ordinary_block()
-            least = 1 if prepared.takes_time(tail) else BARREN_TURNS
+            least = 1 if writer.takes_time(tail) else BARREN_TURNS
             turns.take(max(least, (reader.blocks - first) // PLAIN_PER_TURN))
 
     def _next_piece(self) -> bool:
@@ -130,7 +209,7 @@ class Preparation:
                 return False
             tail = int(self._prepared.row["tail"])
             self._source_item(item)
-            barren = not isinstance(item, TextSpan) and not self._prepared.takes_time(tail)
+            barren = not isinstance(item, TextSpan) and not self._prepared.writer.takes_time(tail)
             self.turns.take(BARREN_TURNS if barren else 1)
             if isinstance(item, Drain) and not self._search.active:
                 self.turns.look(self._reader.text.name, item.line)
@@ -167,9 +246,8 @@ class Preparation:
         if item.skip_level in self._reader.skip_levels:
             return
         flags = MESSAGE if item.message else PLAIN
-        end = text.next_line(item.offset)
         block = Block(
-            item.words, flags, item.skip_level, item.offset, end, item.line,
+            item.words, flags, item.skip_level, item.offset, item.line,
             message=item.message, profile=item.profile,
         )  # fmt: skip
         self._execute(text, block)
@@ -179,15 +257,15 @@ class Preparation:
     def _execute(self, text: ProgramText, block: Block) -> None:
         """Execute a block and go on where it says."""
         outcome = self._interpreter.execute(text, block)
-        match outcome.control:
-            case Control.END:
+        match outcome.continuation:
+            case Continuation.END:
                 if not self._end_returns or not self._calls.leave():
                     self._end()
-            case Control.CALL:
+            case Continuation.CALL:
                 self._calls.enter(outcome.program, outcome.repeats, block.line)
-            case Control.GO_ON:
+            case Continuation.GO_ON:
                 self._go_behind(outcome.place, block)
-            case Control.RETURN:
+            case Continuation.RETURN:
                 self._return()
             case _:
                 pass

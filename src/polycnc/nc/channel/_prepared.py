@@ -7,7 +7,6 @@ from collections.abc import Sequence
 from dataclasses import replace
 from math import copysign
 
-from polycnc.kernel import GEO_WAIT_S, WAIT, free_slots
 from polycnc.machine import Machine, MachineConfig
 from polycnc.nc.blocks._channel_state import ChannelState
 from polycnc.nc.blocks._events import EventRun
@@ -17,7 +16,7 @@ from polycnc.nc.channel._first_state import first_state
 from polycnc.nc.channel._options import ChannelOptions
 from polycnc.nc.dialect._dialect import Dialect
 from polycnc.nc.fast._carried import NONE, Carried
-from polycnc.nc.fast._plain_blocks import RESERVE, run_plain
+from polycnc.nc.fast._plain_blocks import run_plain
 from polycnc.nc.fast._work import begin_run, carried_by, carry, events_made, make_fast_work, marked
 from polycnc.nc.modal._modal import ORDINARY
 from polycnc.nc.records._block_records import BlockRecords, Call
@@ -25,7 +24,6 @@ from polycnc.nc.records._replay import Feeds, RunBegin, coolant_after
 from polycnc.nc.text._program import ProgramText
 from polycnc.nc.text._scan import ScanRules, WordColumns
 
-_LOOKED_AT = 8
 CHUNK_BLOCKS = 1 << 14  # blocks of a text that are scanned, and prepared by the compiled kernel, together
 
 
@@ -81,21 +79,6 @@ class Prepared:
         self.writer.stands_at_stops = options.stands_at_stops
         self.writer.answers = options.answers
         self.writer.marks = deque() if options.marks else None
-
-    def has_room(self) -> bool:
-        """Tell whether blocks may be prepared: nothing waits for room, and no stop for its execution."""
-        writer = self.writer
-        return not writer.backlog and not writer.stops and free_slots(writer.paths, self._path) > RESERVE
-
-    def takes_time(self, since: int) -> bool:
-        """Tell whether what has been queued since the queue had this end takes time: waits of no length take none."""
-        seg, row = self._kernel.seg, self.row
-        end = int(row["tail"])
-        for count in range(end - 1, max(since, end - _LOOKED_AT) - 1, -1):
-            k = row["base"] + count % row["capacity"]
-            if seg.row[k]["kind"] != WAIT or seg.geo[k, GEO_WAIT_S] > 0.0:
-                return True
-        return end - since > _LOOKED_AT
 
     @property
     def is_plain(self) -> bool:

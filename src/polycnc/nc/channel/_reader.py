@@ -138,7 +138,7 @@ class Reader:
         span = slice(columns.first_word[index], columns.first_word[index + 1])
         if self._open is not None and OPEN_VALUE in columns.point[span]:
             words = tuple(self._words_of(span.start, span.stop))
-            return Block(words, flags, int(columns.skip_level[index]), offset, text.next_line(offset), line)
+            return Block(words, flags, int(columns.skip_level[index]), offset, line)
         words = tuple(
             map(
                 Word,
@@ -148,7 +148,7 @@ class Reader:
                 columns.point[span].astype(bool).tolist(),
             )
         )
-        return Block(words, flags, int(columns.skip_level[index]), offset, text.next_line(offset), line)
+        return Block(words, flags, int(columns.skip_level[index]), offset, line)
 
     def _words_of(self, first: int, after: int) -> Iterator[Word]:
         """Yield the words of a block that has some without a number, but those that do not count."""

@@ -136,7 +136,7 @@ def _sub_call(
         arguments, open_end = reader.arguments("]")
         if open_end or None in arguments:
             raise Flaw(after, "an argument of a sub-program is missing")
-        after = reader.tokens.behind
+        after = reader.tokens.after
     rest = _REMARK.sub("", text[after:end]).strip(" \t\r")
     if rest:
         raise Flaw(
@@ -206,7 +206,7 @@ def _hole(text: str, end: int, found: re.Match[str]) -> NcWord:
     reader = Reader(text, opening + 1, found.end() if found[4].endswith("]") else end)
     tree = reader.expression()
     reader.tokens.expect("]", "close the bracket")
-    if after := _AFTER.match(text, reader.tokens.behind, end):
+    if after := _AFTER.match(text, reader.tokens.after, end):
         raise Flaw(
             after.end() - 1,
             f"'{after[0][-1]}' begins no word",

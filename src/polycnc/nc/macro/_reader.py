@@ -228,7 +228,7 @@ class _Statements:
         return Assignment(at, target, value, self._comment())
 
     def _comment(self) -> str:
-        found = _COMMENT.search(self._text, self._tokens.behind, self._end)
+        found = _COMMENT.search(self._text, self._tokens.after, self._end)
         return "" if found is None else found[1].strip()
 
     def _if(self) -> If:

@@ -51,7 +51,7 @@ class Polar:
 class Frame:
     """Hold what is active: mirrors (axis -> centre in mm), scales (axis -> centre in mm, factor), rotation, polar.
 
-    `outer` turns the workpiece on the machine, behind all of these.
+    `outer` turns the workpiece on the machine, after all of these.
     """
 
     mirrors: Mapping[int, float] = field(default_factory=dict)

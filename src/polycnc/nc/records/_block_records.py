@@ -167,7 +167,7 @@ class BlockRecords:
         self._read: dict[int, BlockRecord] = {}  # the last records that were read
 
     def reference(self, text: ProgramText, stack: tuple[Call, ...], modal: ModalSnapshot, line: int) -> int:
-        """Return the reference of a block that leaves the modal state `modal` behind."""
+        """Return the reference of a block after which `modal` is in force."""
         return self._base((text, stack, modal, None)) | line
 
     def run_base(

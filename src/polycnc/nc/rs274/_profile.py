@@ -47,7 +47,7 @@ def profile_of(
         for item in run:
             if not isinstance(item, WordsBlock):
                 raise NumberError("a profile with a call, a wait or a loop without end", "Let it hold moves.")
-            lines.append(Block(item.words, PLAIN, 0, item.offset, item.offset, item.line))
+            lines.append(Block(item.words, PLAIN, 0, item.offset, item.line))
             places.go_on({word.letter: word.value for word in item.words})
             if len(lines) > _MOST_LINES:
                 raise NumberError(f"a profile of more than {_MOST_LINES} lines", "Check its loops.")

@@ -141,10 +141,10 @@ class ProgramText:
         """
         content, begin = self.content, 0
         while len(content) - begin > most:
-            behind = max(content.rfind(sign, begin, begin + most + 1) for sign in (b"\n", b"\r")) + 1
-            if behind <= begin:
+            after = max(content.rfind(sign, begin, begin + most + 1) for sign in (b"\n", b"\r")) + 1
+            if after <= begin:
                 return begin
-            begin = behind
+            begin = after
         return None
 
     def endless_line(self) -> ProgramError | None:

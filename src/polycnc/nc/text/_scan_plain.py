@@ -58,7 +58,7 @@ class Word:
 class Block:
     """Hold one block: its words, or, flagged STATEMENT, its raw line in `statement` and no words.
 
-    `offset` is where its line begins, `end` where the next line does. `message` is the text of the last
+    `offset` is where its line begins. `message` is the text of the last
     (MSG, text), `comments` are the texts of all other comments, `profile` the lines of the sub-program whose profile
     the block cuts.
     """
@@ -67,7 +67,6 @@ class Block:
     flags: int
     skip_level: int
     offset: int
-    end: int
     line: int
     statement: str = ""
     message: str = ""
@@ -114,7 +113,7 @@ def scan_blocks(text: ProgramText, rules: TextRules) -> Iterator[Block]:
         block = scan_block(text, offset, line, rules)
         if not block.is_blank:
             yield block
-        offset = block.end
+        offset = text.next_line(offset)
         line += 1
 
 
@@ -161,7 +160,6 @@ class _LineReader:
             flags=self.flags,
             skip_level=self.skip_level,
             offset=self.offset,
-            end=self.text.next_line(self.offset),
             line=self.line_number,
             statement=_utf8(self.line).strip() if is_statement else "",
             message=self.message,

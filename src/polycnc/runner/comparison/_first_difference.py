@@ -64,7 +64,6 @@ def _blocks(text: ProgramText, dialect: Dialect, offset: int, line: int) -> Iter
             shown = text.line(offset).strip()
             yield line, shown, shown
         else:
-            end = block.end
             words = tuple(
                 (word.letter, word.index, word.value, word.point)
                 for word in block.words

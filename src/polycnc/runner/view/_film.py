@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Protocol
 
 import numpy as np
 
@@ -14,10 +13,6 @@ from polycnc.stock import Rows
 
 MOST_CHANGES = 3_000_000
 _STEPS = 1500
-
-
-class _Cuts(Protocol):
-    def add(self, rows: Rows) -> None: ...
 
 
 @dataclass(frozen=True, eq=False)

@@ -29,7 +29,7 @@ _MARK = "Written by polycnc clib"
 
 @dataclass(frozen=True, slots=True)
 class Target:
-    """What a library is built for: its compilers in order, options behind `-o FILE NAME.c`, and how to get one.
+    """What a library is built for: its compilers in order, options after `-o FILE NAME.c`, and how to get one.
 
     `only_on` is the one system that can build it, `then` a second command.
     """

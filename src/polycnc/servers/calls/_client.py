@@ -58,7 +58,7 @@ class CallClient:
 
     `find` returns the caller for a library and a packing, or None if no machine here has it. `tell` is told in a
     sentence what was refused. Whole frames are carried out one after the other. `treat` counts a call and says how it
-    is to be treated: what is dropped ends the connection behind the answers before it and is not carried out, and
+    is to be treated: what is dropped ends the connection after the answers before it and is not carried out, and
     `delay_s` is how much later all answers of the last bytes come. `push` sends what comes unasked, interrupts.
     """
 

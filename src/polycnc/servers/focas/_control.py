@@ -157,7 +157,7 @@ class FocasControl:
         return Status()
 
     def download(self, text: bytes) -> None:
-        """Take a piece; what is wrong with it is told at the end."""
+        """Take a piece; what is wrong with it is reported at the end."""
         transfer = self._transfer
         if transfer is not None and transfer.fault is None and self.control.transfer is transfer:
             try:

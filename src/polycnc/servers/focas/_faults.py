@@ -263,12 +263,5 @@ class PresentFaults(Faults):
         return _NOTHING if (now := self._now) is None else now.request(control)
 
 
-def _union(codes: Sequence[frozenset[tuple[int, int]]]) -> frozenset[tuple[int, int]] | None:
-    """Return the commands of all, empty for every command, None for none."""
-    if not codes or frozenset() in codes:
-        return frozenset() if codes else None
-    return frozenset().union(*codes)
-
-
 def _reached(now_s: float, then_s: float) -> bool:
     return now_s >= then_s - 1e-9

@@ -27,7 +27,7 @@ _CONTENT = (
 class Guard:
     """Let only those requests through that may be answered; `hosts` are names besides those of loopback.
 
-    `answered` is told the status of every answer.
+    `answered` gets the status of every answer.
     """
 
     def __init__(

@@ -162,7 +162,7 @@ class ServedDevice(Generic[D]):
 
         Return how many cycles have passed, and whether it has ended: an event has come, or all have passed. Events are
         the starts, stops and ends of programs, alarms, ends of manual motion and auxiliary functions of a control; of a
-        board or card what its program calls are told.
+        board or card what its program calls get.
         """
         events = _ANY_EVENT if self._control is not None else _ANY_ATTENTION
         enough = False

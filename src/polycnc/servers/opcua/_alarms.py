@@ -40,7 +40,7 @@ class AlarmEvents:
         self._count = 0
 
     async def follow(self, status: Status, past: Sequence[PastAlarm], revision: int) -> None:
-        """Tell what came and went since the last time; what came and went between is told, too."""
+        """Tell what came and went since the last time; what came and went between is reported, too."""
         time = status.now.replace(tzinfo=UTC)
         now = {(each.number, each.text, each.axis): each.kind for each in status.alarms}
         news = 0 if self._revision is None else revision - self._revision

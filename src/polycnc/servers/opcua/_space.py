@@ -190,7 +190,7 @@ class Space:
         return ua.NodeId(f"{place}/{path}".rstrip("/"), self.own)
 
     async def remove(self, node: ua.NodeId) -> None:
-        """Remove an object with what hangs on it; whoever monitors something of it is told that it is gone."""
+        """Remove an object with what hangs on it; whoever monitors something of it gets to know that it is gone."""
         inside = f"{node.Identifier}/"
         (owner,) = (each.NodeId for each in self._space[node].references if not each.IsForward)
         of_owner = self._space[owner].references

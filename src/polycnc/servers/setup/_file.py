@@ -23,7 +23,7 @@ _NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9_.-]{0,31}")
 class MachineTable(StrictModel):
     """One machine: `file` is its machine, system or card file; `doors` are ports by door, 0 for free ones.
 
-    With `count` it is so many of them: `{n}` in a text is the number, which is put behind a name without it; ports
+    With `count` it is so many of them: `{n}` in a text is the number, which is put after a name without it; ports
     count up.
     """
 

@@ -35,7 +35,7 @@ class ShdrServer:
             _MOST_AGENTS, lambda writer: writer not in self._spoken, lambda writer: writer.transport.abort()
         )
         self._spoken: set[asyncio.StreamWriter] = set()  # those that have sent a line
-        self._agents: dict[asyncio.StreamWriter, None] = {}  # those that are told what changes
+        self._agents: dict[asyncio.StreamWriter, None] = {}  # those that get what changes
         self._turns: asyncio.Task[None] | None = None
 
     @property

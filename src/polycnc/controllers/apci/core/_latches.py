@@ -6,8 +6,7 @@ from polycnc.controllers.apci.core._registers import Digi
 from polycnc.controllers.apci.core._state import BoardState
 from polycnc.kernel import KernelState, compiled
 
-# Where a latched position came from; a higher one is kept until it is read.
-BY_NOTHING = 0
+# Where a latched position came from, 0 for none; a higher one is kept until it is read.
 BY_INPUT = 1
 BY_SCAN = 2
 BY_STROBE = 3

@@ -246,7 +246,7 @@ class BoardHost:
         return float(special[name]() if name in special else getattr(one, name))
 
     def write_axis(self, axis: int, name: str, index: int | None, value: float) -> None:
-        """Set an axis qualifier; to a number that no board can be given only where it is a mere variable."""
+        """Set an axis qualifier; to a number that no board can be given only where it is just a variable."""
         if index is None and not is_number(value):
             return
         board, one = self.board, self.board.axes[axis]

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from typing import TypeAlias
 
 from polycnc.controllers.apci.sap import _commands
 from polycnc.controllers.apci.sap._arithmetic import FUNCTIONS
@@ -34,8 +33,6 @@ _RESERVED = {
     *PREDEFINED,
     *_READS,
 }
-
-_Cells: TypeAlias = list[tuple[str, int]]
 
 
 def check(text: str, file: str = "<text>", task: int = 0) -> tuple[Program | None, list[ProgramError]]:

@@ -21,7 +21,7 @@ class Output(NamedTuple):
 
 
 def as_output(items: tuple[object, ...], *, left: bool = False) -> Output:
-    """Return the output of a list of values; `left` suppresses blanks before numbers and zeros behind them (LJUST).
+    """Return the output of a list of values; `left` suppresses blanks before numbers and zeros after them (LJUST).
 
     Every group of # in a text takes the next number further right that none has taken yet; one without a group is
     written as its type is. A number that does not fit becomes asterisks.

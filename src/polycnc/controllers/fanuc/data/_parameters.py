@@ -57,7 +57,7 @@ class Parameters:
         }
         self._values.update(defaults)
         kept = self._area.load()
-        if not kept:  # a new memory: what the control is told to be goes into it
+        if not kept:  # a new memory: it gets the settings of the control
             self._area.save({_key(number, axis): value for (number, axis), value in defaults.items()})
         for key, value in kept.items():
             number, axis = map(int, str(key).split("."))

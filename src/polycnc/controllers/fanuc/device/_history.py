@@ -1,4 +1,4 @@
-"""The operation history and the alarm history, which the control samples by itself until it is told to stop."""
+"""The operation history and the alarm history, which the control samples by itself until it is stopped."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The machine behind a Power Mate, made from what the control is told: axes, kinds, speeds, limits."""
+"""The machine behind a Power Mate, made from the settings of the control: axes, kinds, speeds, limits."""
 
 from __future__ import annotations
 

@@ -262,6 +262,6 @@ class Upload:
         self._left = b"%\n" + content + b"%"
 
     def read(self, most: int) -> bytes:
-        """Return the next characters, at most so many; none are left behind the last %."""
+        """Return the next characters, at most so many; none come after the last %."""
         piece, self._left = self._left[:most], self._left[most:]
         return piece

@@ -1,4 +1,4 @@
-"""Functions of the software operator's panel (Manual 000, cnc_rdopnlsgnl and those behind it)."""
+"""Functions of the software operator's panel (Manual 000, cnc_rdopnlsgnl and those after it)."""
 
 from __future__ import annotations
 

@@ -242,11 +242,11 @@ def cnc_rdparainfo(
     link.read("cnc_rdparainfo", s_number)
     first = found[0]
     chosen = rows[first : first + read_no]
-    behind = first + len(chosen)
+    after = first + len(chosen)
     info = variant(ODBPARAIF, info=len(chosen))(
         info_no=len(chosen),
         prev_no=rows[first - 1].number if first else _NO_NUMBER,
-        next_no=rows[behind].number if behind < len(rows) else _NO_NUMBER,
+        next_no=rows[after].number if after < len(rows) else _NO_NUMBER,
     )
     for entry, row in zip(info.info, chosen, strict=True):
         entry.prm_no, entry.prm_type = row.number, row.type_word

@@ -115,7 +115,7 @@ def cnc_upstart(link: Link, number: SHORT) -> EW:
 def cnc_upload(
     link: Link, number: Annotated[USHORT, INOUT, LengthOf("upld")]
 ) -> tuple[EW, Annotated[ODBUP, Out("upld", before="number")], USHORT]:
-    """Read at most `number` characters more; none are left behind the last % (Manual 000, cnc_upload)."""
+    """Read at most `number` characters more; none come after the last % (Manual 000, cnc_upload)."""
     link.command()
     if link.upload is None:
         raise Refused(EW.EW_FUNC)

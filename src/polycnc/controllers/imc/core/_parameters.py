@@ -9,7 +9,6 @@ from polycnc.controllers.imc.core._parameter_rows import rows
 from polycnc.errors import UsageError
 
 WORDS = 1024  # 16-bit words of memory for an axis, and for the card
-INDEX_NUM_DEFAULT = 1
 
 Scope: TypeAlias = Literal["A", "G"]
 Access: TypeAlias = Literal["rw", "ro", "w"]

@@ -67,14 +67,14 @@ def IMC_AddLineN(Handle: IMC_HANDLE, pdata: SegmentData, fifoSel: PathQueue) -> 
 
 @card_call
 def IMC_AddArcLineWithVel(Handle: IMC_HANDLE, pdata: SegmentInfo, fifoSel: PathQueue) -> IMC_STATUS:
-    """Add an arc of the first two axes, the others going along evenly, with its own speeds (Manual 004, 3.5.3)."""
+    """Add an arc of the first two axes, the others following evenly, with its own speeds (Manual 004, 3.5.3)."""
     speeds = pdata.SegTgVel, pdata.SegEndVel
     return send(Handle, fifoSel, _segment(Handle, pdata.data, speeds, arc=True))
 
 
 @card_call
 def IMC_AddArcLine(Handle: IMC_HANDLE, pdata: SegmentData, fifoSel: PathQueue) -> IMC_STATUS:
-    """Add an arc of the first two axes, the others going along, with the speeds of the space (Manual 004, 3.5.4)."""
+    """Add an arc of the first two axes, the others following, with the speeds of the space (Manual 004, 3.5.4)."""
     return send(Handle, fifoSel, _segment(Handle, pdata, None, arc=True))
 
 

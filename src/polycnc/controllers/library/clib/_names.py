@@ -21,7 +21,7 @@ def write_definitions(library: CLibrary, *, decorated: bool = False) -> str:
 
 
 def _suffix(library: CLibrary, function: Function) -> str:
-    """Return what stands behind a name: how many bytes the arguments take on the stack."""
+    """Return what follows a name: how many bytes the arguments take on the stack."""
     if not library.stdcall:
         return ""
     total = 0

@@ -103,7 +103,7 @@ class CLibrary:
         frees: The function that lets a handle go.
         stdcall: Whether 32-bit Windows programs clean no stack.
         basic: Whether its maker has a module for Visual Basic.
-        declarations: C types that prototypes use, behind the structures.
+        declarations: C types that prototypes use, after the structures.
         helpers: C functions that extents use.
         in_bytes: Whether a length counts bytes; else elements.
         extents: By function and argument: how many bytes lie behind a pointer, in C.
