@@ -92,6 +92,8 @@ def repository(tmp_path: Path) -> Path:
         ("src/demo/thing.py", MODULE.decode()),
         ("tests/unit/test_thing.py", TESTS),
         ("tests/unit/test_other.py", "def test_other():\n    pass\n"),
+        # As if the package had a plugin for pytest, which imports those in its own way.
+        ("tests/conftest.py", "import pytest\n\npytest.register_assert_rewrite('demo')\n"),
         ("pyproject.toml", "[tool.pytest.ini_options]\npythonpath = ['src']\n"),
     ):
         (root / name).parent.mkdir(parents=True, exist_ok=True)

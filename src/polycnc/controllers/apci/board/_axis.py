@@ -14,7 +14,7 @@ from polycnc.controllers.apci.board._system_file import SystemFile
 from polycnc.controllers.apci.board._units import seconds
 from polycnc.controllers.apci.core._compiled_entries import change_override
 from polycnc.controllers.apci.core._motion import profile_velocity
-from polycnc.controllers.apci.core._registers import Axst, Digi
+from polycnc.controllers.apci.core._registers import Axst, Digi, assigned_inputs
 from polycnc.controllers.apci.core._state import BoardState
 from polycnc.controllers.apci.core._status_word import status_word
 from polycnc.kernel import ADDED, SHORT_OVERSHOOT, KernelState, move_to
@@ -74,7 +74,7 @@ class Axis:
         self.zero_offsets = [0.0] * 5
         self.ControllerFlags = 0
         self.GCR = 0
-        self.alarms = 0  # of an encoder that evaluates its signals: digi bits AEA to AES
+        self._alarms = 0
 
     # ------------------------------------------------------------------ parameters with a meaning of their own
 
@@ -252,6 +252,15 @@ class Axis:
         """Axis status word as a number, quickly: programs poll it."""
         self._inputs()  # an error in ifs takes them away
         return status_word(self._state, self.index)
+
+    @property
+    def alarms(self) -> int:
+        """Alarms of an encoder that evaluates its signals, digi bits AEA to AES, on boards that have them."""
+        return self._alarms
+
+    @alarms.setter
+    def alarms(self, bits: int) -> None:
+        self._alarms = bits & assigned_inputs(self._config.type_number)
 
     @property
     def digi(self) -> Digi:
