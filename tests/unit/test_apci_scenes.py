@@ -16,6 +16,7 @@ from polycnc.conformance import State, load_conformance
 from polycnc.controllers.apci import ErrorReg, pcap
 from polycnc.controllers.apci.sap._commands import AXIS_QUALIFIERS, SYSTEM_VARIABLES
 from support.apci_bench import Bench, difference
+from support.apci_mixture import MIXED, Mixture
 from support.apci_pc import near
 
 WRITES = {name for name in pcap.FUNCTIONS if name.startswith("wr") and f"rd{name[2:]}" in pcap.FUNCTIONS} - {
@@ -833,6 +834,9 @@ def programs(b: Bench) -> None:
     )
     b.step(20)
 
+
+for seed in (1, 2, 3, 4):
+    SCENES[f"mixed{seed}"] = (MIXED, lambda b, seed=seed: Mixture(b, seed).run(36))
 
 WITH_PROGRAM = ("values", "jogs", "steppers", "queues", "overrides")
 
