@@ -468,6 +468,23 @@ def test_four_tasks_are_started_stopped_and_show_what_they_do(two: TwoBoards, tm
     assert [status(task)[2] for task in range(4)] == [0, 0, 0, 0]
 
 
+@pytest.mark.covers("apci.sap", "apci.sap.multitasking", "apci.const.tasks")
+def test_calls_of_four_tasks_at_once_keep_apart(two: TwoBoards, tmp_path: Path) -> None:
+    assert two.initialise()[0] == 0
+    for task in range(4):
+        text = (
+            f"PROCEDURE p (n : INTEGER); VAR k : INTEGER; BEGIN k := n; IF n > 0 THEN BEGIN p (n - 1); wt (1.28); "
+            f"CI{task} := CI{task} * 2 + k END END;\nBEGIN p ({task + 3}); CI{task + 10} := 1 END."
+        )
+        (tmp_path / "p.cnc").write_bytes(sap.write_cnc(sap.compile_program(text, task=task)))
+        assert pcap.txbf2("p.cnc") == 0
+        pcap.startcnct(task)
+    pcap.board().advance(40)
+    pcap.rdci(100, found := pcap.CIBUF())
+    assert list(found.ci[:4]) == [11, 26, 57, 120]  # ((1 * 2 + 2) * 2 + 3) * 2 + 4 ...
+    assert list(found.ci[10:14]) == [1, 1, 1, 1]
+
+
 @pytest.mark.covers("apci.gettskstr", "apci.const.taskstr", "apci.gettskinfo")
 @pytest.mark.covers("apci.tskinfo.bit0", "apci.tskinfo.bit1", "sap.WRITE")
 def test_at_most_512_bytes_of_a_string_are_returned(two: TwoBoards, tmp_path: Path) -> None:
