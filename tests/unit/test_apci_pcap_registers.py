@@ -235,6 +235,11 @@ def test_the_sample_time_is_1280_microseconds(pc: Pc) -> None:
     before = pc.board.time_s
     pc.board.advance(1)
     assert pc.board.time_s - before == near(1280e-6)
+    for sample_time_us in (1023, 639, 99_999):  # to the microsecond, as it is planned
+        other = Pc(f"sample_time_us = {sample_time_us}\n")
+        assert pcap.rdSampleTime() == (1, sample_time_us)
+        other.board.advance(3)
+        assert other.board.time_s == near(3e-6 * sample_time_us)
 
 
 @pytest.mark.covers(

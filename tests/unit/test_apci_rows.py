@@ -17,6 +17,7 @@ from polycnc.controllers.apci.board._system_file import parse_system_file
 from polycnc.controllers.apci.pc._installed import InstalledBoard
 from polycnc.controllers.apci.pc._slots import Slot
 from support.apci_bits import Axst, ErrorReg
+from support.apci_pc import Pc, near
 
 FIRST = "[[axis]]\njac = 11.0\n"
 SECOND = """
@@ -45,6 +46,7 @@ motor = "stepper"
 [inputs]
 4 = { inverted = true }
 [outputs]
+3 = { functions = ["PAE"] }
 2 = { functions = ["PAE"], axes = ["A3"] }
 5 = { functions = ["PAE"], axes = ["A1", "A2", "A4"] }
 7 = { set_at_reset = true }
@@ -283,7 +285,7 @@ def test_initialising_reads_every_element_of_the_third_axis(two: TwoBoards, way:
     assert INITIALISE[way](two, "none.dat") == 0
     assert (third.jac, third.jovr, third.rp, third.dp, third.tp) == (44.5, 0.375, -8.25, -8.25, 3.25)
     assert third.axst & (Axst.cl | Axst.referenced | Axst.pe) == Axst.cl | Axst.referenced | Axst.pe
-    assert (third.digi & 0xFFFF, third.digo, third.lsm < 145_000) == (0b100_0000_1000, 0x42, True)
+    assert (third.digi & 0xFFFF, third.digo, third.lsm < 145_000) == (0b100_0000_1000, 0x46, True)
 
 
 @pytest.mark.covers("apci.CardSelect", "apci.CardSelect.ret.minus1", "apci.getEnvStr", "apci.CppString")
@@ -499,6 +501,131 @@ def test_at_most_512_bytes_of_a_string_are_returned(two: TwoBoards, tmp_path: Pa
         assert pcap.gettskstr(3, size) == (length, ("0123456789" * 52)[:length])
 
 
+# ---------------------------------------------------------------------- inputs
+
+PLANNED = {  # function of two inputs, and the bit of axst that one of them sets
+    "EO": 1,
+    "DR": 2,
+    "LSL_SMD": 3,
+    "LSL_TOM": 3,
+    "LSL_SMA": 3,
+    "LSR_SMD": 4,
+    "LSR_TOM": 4,
+    "LSR_SMA": 4,
+    "UI": 15,
+    "REF": 18,
+}
+
+
+@pytest.mark.covers("apci.rdaxst", "apci.rdaxstb", "apci.TSRP.axst")
+@pytest.mark.parametrize("closed", [False, True])
+@pytest.mark.parametrize(
+    "function", [pytest.param(name, marks=pytest.mark.covers(f"apci.io.{name}")) for name in PLANNED]
+)
+def test_each_of_several_inputs_acts_for_the_axes_that_it_is_planned_for(function: str, closed: bool) -> None:
+    plan = f"functions = ['{function}']"
+    system = (
+        f"[inputs]\n3 = {{ {plan}, axes = ['A2'] }}\n12 = {{ {plan}, axes = ['A2', 'A3'] }}\n7 = {{ {plan} }}"
+    )
+    pc = Pc(f"number_of_axes = 3\n{system}")
+    if closed:
+        pc.close(0, 1, 2)
+    bit, rest = PLANNED[function], {Axst.pe | Axst.cl * closed}
+    for levels in ((), (3,), (12,), (7,), (3, 12), (3, 7, 12), (2, 4, 6, 8, 11, 13)):
+        for number in range(1, 17):
+            pc.board.set_input(number, number in levels)
+        pc.board.advance(1)
+        inputs = [sum(n in levels for n in planned) for planned in ((7,), (3, 7, 12), (7, 12))]
+        shown = [count < most for count, most in zip(inputs, (1, 3, 2), strict=True)]
+        shown = shown if function == "DR" else [count > 0 for count in inputs]
+        for an in range(3):
+            pcap.rdaxst(record := pcap.TSRP(an=an))
+            assert {record.axst & ~(1 << bit)} == rest
+            assert (record.axst >> bit & 1, pcap.rdaxstb(an, bit + 1)) == (shown[an], shown[an])
+    pcap.detach()
+
+
+# ---------------------------------------------------------------------- profiles
+
+
+@pytest.mark.covers("apci.profile.move.case.v0_gt_vmax", "apci.profile.override", "apci.utrovr", "apci.smlr")
+@pytest.mark.parametrize("override", [0.5, 1.0, 1.25])
+def test_a_queued_move_begins_with_its_velocity_at_once_under_an_override(override: float) -> None:
+    pc = Pc()
+    axes = pc.close(0, 1)
+    pcap.wrtrovr(override)
+    pcap.utrovr(axes)
+    pcap.smlr(axes, pcap.LMP(ac=1000.0, vl=20.0, tvl=20.0, dtm=[0.6, 0.8]))
+    pcap.smlr(axes, pcap.LMP(ac=1000.0, vl=8.0, dtm=[0.6, 0.8]))
+    pcap.ssms(axes)
+    seen = []
+    while not pcap.rdaxstb(0, 13) or not seen:
+        pc.board.advance(1)
+        seen.append(round((pc.dv(0) ** 2 + pc.dv(1) ** 2) ** 0.5, 9))
+    fastest = seen.index(20.0 * override)
+    jump = next(k for k in range(fastest, len(seen)) if seen[k] != seen[fastest])
+    assert seen[jump] == seen[jump + 9] == 8.0 * override
+    pcap.detach()
+
+
+UNITS = {"mm": (0, 1.0), "inch": (1, 25.4), "m": (2, 1000.0), "counts": (6, 1e-3), "steps": (7, 1e-3)}
+
+
+@pytest.mark.covers(
+    "apci.ms", "apci.MODEREG.15.MS_DECEL", "apci.wrtrac", "apci.ctru", "apci.TRU", "apci.TRU.pu"
+)
+@pytest.mark.covers("apci.TRU.tu", "apci.tu.sec", "apci.tu.min", "apci.tu.tsample", "apci.pcap.general.units")
+@pytest.mark.parametrize(
+    "name", [pytest.param(name, marks=pytest.mark.covers(f"apci.pu.{name}")) for name in UNITS]
+)
+def test_ms_brakes_with_trac_in_the_units_of_interpolation(name: str) -> None:
+    pu, unit_mm = UNITS[name]
+    pc = Pc("[[axis]]\nslsp = 2000.0\ngf = 0.5\n")  # 1000 counts/mm
+    axes = pc.close(0)
+    pcap.wrModeReg(1 << 15)
+    for tu, time_s in enumerate((1.0, 60.0, 0.00128)):
+        pcap.ctru(pcap.TRU(pu=pu, tu=tu))
+        ac, vl = 2540.0 / unit_mm * time_s**2, 50.8 / unit_mm * time_s
+        pcap.mlr(axes, pcap.LMP(ac=ac, vl=vl, dtm=[900.0 / unit_mm]))
+        pcap.wrtrac(254.0 / unit_mm * time_s**2)
+        pc.board.advance(50)
+        begun, velocity = pc.rp(0), pc.dv(0)
+        pcap.ms(axes)
+        scans = pc.scans_until_rest()
+        assert velocity == near(50.8)
+        assert (scans, pc.rp(0) - begun) == (157, near(5.08))  # 0.2 s, v * v / (2 * a)
+    pcap.detach()
+
+
+# ---------------------------------------------------------------------- messages
+
+CODES = {  # of each function, all that the manual lists
+    "BootErrorReport": (0, *range(10, 17), 200, 201, 202),
+    "InitMcuErrorReport": (0, *range(20, 26), *range(31, 40)),
+    "txbfErrorReport": (0, *range(20, 26)),
+}
+
+
+@pytest.mark.covers(*(f"apci.{name}" for name in CODES), "apci.MsgToScreen")
+def test_a_report_knows_the_codes_of_its_function_and_no_others() -> None:
+    shown: list[str] = []
+    pcap.attach(show=shown.append)
+    for name, codes in CODES.items():
+        texts = {}
+        for code in range(-5, 210):
+            if name == "InitMcuErrorReport":
+                pcap.InitMcuErrorReport(code)
+            else:
+                getattr(pcap, name)("some.file", code)
+            texts[code] = shown.pop()
+            assert texts[code].endswith(f"({code})")
+            assert ("some.file" in texts[code]) == (name != "InitMcuErrorReport")
+        assert [code for code, text in texts.items() if "unknown" not in text] == list(codes)
+        assert len({texts[code] for code in codes}) == len(codes)
+    assert not shown
+    pcap.detach()
+
+
 # ---------------------------------------------------------------------- interrupts, relays, errors
 
 
@@ -532,13 +659,13 @@ def test_outputs_and_relays_follow_the_loops_of_their_axes(two: TwoBoards) -> No
     pcap.wrdigo(pcap.TSRP(an=0, digo=0x81))
     assert shown() == (0x81, [False, False, False, False])
     pcap.cl(pcap.AS.of(2))
-    assert shown() == (0x83, [False, False, True, False])
+    assert shown() == (0x87, [False, False, True, False])  # output 3 is that of all axes
     pcap.clv(pcap.AS.of(3, 1))
-    assert shown() == (0x93, [False, True, True, True])
+    assert shown() == (0x97, [False, True, True, True])
     pcap.ol(pcap.AS.of(1))
     assert shown() == (0x83, [False, False, True, True])  # of an output that axes share too
     pcap.cl(pcap.AS.of(0))
-    assert shown() == (0x93, [True, False, True, True])
+    assert shown() == (0x97, [True, False, True, True])
     pcap.ra(pcap.AS.of(3))
     assert shown() == (0x40, [True, False, True, False])  # the outputs of the group are as planned
     pcap.rs()

@@ -197,7 +197,7 @@ def test_a_program_reads_the_status_and_signals_that_the_pc_reads() -> None:
         state.axis[1][name] = 0
     state.board[0]["inputs"] = 0x6000
     for bit, name in _OF_INPUTS.items():
-        for planned, active in ((0x4000, True), (0x6000, True), (0x1000, False), (0x1200, False)):
+        for planned, active in ((0x4000, True), (0x4200, True), (0x1000, False), (0x1200, False)):
             state.plan[1][name] = planned
             assert shown() == active << bit, name
         state.plan[1][name] = 0
