@@ -5,8 +5,9 @@ from collections.abc import Iterator
 
 import pytest
 
-from polycnc.controllers.apci import pcap
+from polycnc.controllers.apci import pcap, sap
 from polycnc.controllers.apci.core._registers import Digi
+from polycnc.controllers.apci.sap._board_host import BoardTasks
 from support.apci_bits import Axst
 from support.apci_pc import LATENCY, SCAN_S, Pc, near
 
@@ -218,6 +219,9 @@ def test_old_operating_systems_lack_some_status_bits() -> None:
         pc.board.set_input(4, True)
         pc.board.advance(1)
         pcap.rdaxst(record := pcap.TSRP(an=0))
+        pcap.InitMcuSystem(pc.tsrp)
+        pcap.rdap(whole := pcap.TSRP(an=0))
+        assert whole.axst == pc.tsrp[0].axst == record.axst
         seen[revision] = tuple(bool(record.axst & bit) for bit in (Axst.referenced, Axst.refh))
     pcap.detach()
     assert seen == {"V2.5.3.15": (False, False), "V2.5.3.16": (True, False), "V2.5.3.47": (True, True)}
@@ -358,10 +362,19 @@ def test_alarms_of_an_encoder_are_seen_on_an_apci_8008_only(board: str, number: 
     pc.board.axes[1].alarms = 1 << number - 1
     pc.board.advance(1)
     records = pcap.TSRP(an=1), pcap.TSRP(an=2)
-    for record in records:
-        pcap.rddigi(record)
     shown = board == "APCI-8008"
-    assert [record.digi for record in records] == [shown << number - 1, 0]
+    for read in (pcap.rddigi, pcap.rdap):
+        for record in records:
+            record.digi = 0
+            read(record)
+        assert [record.digi for record in records] == [shown << number - 1, 0]
+    pcap.InitMcuSystem2(pc.tsrp, 0, "system.dat")
+    assert [pc.tsrp[an].digi for an in range(3)] == [0, shown << number - 1, 0]
+    assert isinstance(pc.board.tasks, BoardTasks)
+    pc.board.tasks.load(sap.compile_program("CI1 := A2.digi; CI2 := A3.digi;"))
+    pcap.startcnct(0)
+    pc.board.advance(2)
+    assert list(pc.board.state.ci[1:3]) == [shown << number - 1, 0]
     assert [pcap.rddigib(1, bit) for bit in range(17, 33)] == [
         shown and bit == number for bit in range(17, 33)
     ]

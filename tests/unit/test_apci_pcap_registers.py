@@ -235,6 +235,11 @@ def test_the_sample_time_is_1280_microseconds(pc: Pc) -> None:
     before = pc.board.time_s
     pc.board.advance(1)
     assert pc.board.time_s - before == near(1280e-6)
+    for sample_time_us in (1023, 639, 99_999):  # to the microsecond, as it is planned
+        other = Pc(f"sample_time_us = {sample_time_us}\n")
+        assert pcap.rdSampleTime() == (1, sample_time_us)
+        other.board.advance(3)
+        assert other.board.time_s == near(3e-6 * sample_time_us)
 
 
 @pytest.mark.covers(
@@ -561,5 +566,15 @@ def test_variables_of_special_firmware(pc: Pc) -> None:
     assert (pcap.rdSysVarInt(0), pcap.rdSysVarDbl(0), pcap.rdAxVarInt(1, 1), pcap.rdAxVarDbl(2, 0)) == (
         0,
     ) * 4
+    for ndx in (0, 99):  # the first and the last
+        pcap.wrSysVarInt(ndx, ndx - 55_555)
+        pcap.wrSysVarDbl(ndx, ndx + 0.25)
+        for an in range(3):
+            pcap.wrAxVarInt(an, ndx, 44_444 - 7 * an - ndx)
+            pcap.wrAxVarDbl(an, ndx, -0.125 - 3 * an - ndx)
+    for ndx in (0, 99):
+        assert (pcap.rdSysVarInt(ndx), pcap.rdSysVarDbl(ndx)) == (ndx - 55_555, ndx + 0.25)
+        assert [pcap.rdAxVarInt(an, ndx) for an in range(3)] == [44_444 - 7 * an - ndx for an in range(3)]
+        assert [pcap.rdAxVarDbl(an, ndx) for an in range(3)] == [-0.125 - 3 * an - ndx for an in range(3)]
     pcap.wrSysVarDbl(-1, 3.0)
     assert (pcap.rdSysVarDbl(-1), pcap.rdSysVarDbl(999), pcap.rdAxVarInt(0, 5000)) == (0.0, 0.0, 0)

@@ -15,10 +15,24 @@ from support.sap_on_board import Sap
 
 REFERENCED, LATCHED, RIGHT_SOFT_LIMIT = 1 << 17, 1 << 16, 1 << 6
 JOG = "A1.jac := 100; A1.jvl := 50; A1.jtvl := 0; "
-_SHOWN = (
-    *("hard_limit", "soft_limit", "position_error", "dhef", "cef", "pe", "closed", "in_position", "lpsf"),
-    *("referenced", "saf"),
-)
+_LEFT, _RIGHT = 1, 2
+# Bits of axst as table 12 numbers them: what is behind each, and with which value.
+_OF_AXIS = {
+    3: ("hard_limit", _LEFT),
+    4: ("hard_limit", _RIGHT),
+    5: ("soft_limit", _LEFT),
+    6: ("soft_limit", _RIGHT),
+    7: ("position_error", 1),
+    8: ("dhef", 1),
+    9: ("cef", 1),
+    12: ("pe", 1),
+    13: ("closed", 1),
+    14: ("in_position", 1),
+    16: ("lpsf", 1),
+    17: ("referenced", 1),
+    19: ("saf", 1),
+}
+_OF_INPUTS = {1: "EO", 15: "UI", 18: "REF"}  # and 2, DR, while its input is off
 MEANT = 0x000FF3FE  # the bits of axst that have a meaning
 
 
@@ -169,29 +183,38 @@ def uncompiled(function: Any) -> Any:
 def test_a_program_reads_the_status_and_signals_that_the_pc_reads() -> None:
     axis = Sap()
     own, state = axis.board.axes[1], axis.board.state
-    sources = [(state.axis[1], name) for name in _SHOWN]
-    sources += [(state.plan[1], name) for name in ("EO", "DR", "UI", "REF")]
-    shown = 0
-    for inputs in (0, 1):
-        state.board[0]["inputs"] = inputs
-        for row, name in [*sources, *sources]:  # one after the other on, then off again
-            row[name] = 0 if row[name] else 3 if name.endswith("_limit") else 1
-            status = int(uncompiled(_turn_values._status)(state, 1))
-            assert status == own.status_word, name
-            shown |= status
-            assert status & ~MEANT == 0
-    assert shown == MEANT
     register, kernel = uncompiled(_turn_values.register), axis.board.kernel
+
+    def shown() -> int:
+        assert int(register(state, kernel, _turn_values.STATUS, 1, 1.0, 0)) == own.status_word
+        return own.status_word
+
+    assert shown() == 1 << 12
+    state.axis[1]["pe"] = 0
+    for bit, (name, value) in _OF_AXIS.items():
+        state.axis[1][name] = value
+        assert shown() == 1 << bit, name
+        state.axis[1][name] = 0
+    state.board[0]["inputs"] = 0x6000
+    for bit, name in _OF_INPUTS.items():
+        for planned, active in ((0x4000, True), (0x4200, True), (0x1000, False), (0x1200, False)):
+            state.plan[1][name] = planned
+            assert shown() == active << bit, name
+        state.plan[1][name] = 0
+    for planned, active in ((0x4000, False), (0x6000, False), (0x5000, True), (0x1000, True)):
+        state.plan[1]["DR"] = planned
+        assert shown() == active << 2
+    assert axis.board.axes[0].status_word == axis.board.axes[2].status_word == 1 << 12
     for signals in (0x10000, 0x20000, 0x40000, 0x80000, 0xF0000):
         state.axis[1]["signals"] = signals
-        digi = int(register(state, kernel, _turn_values.SIGNALS, 1, 1.0, 0x500000))
-        own.alarms = 0x500000
-        assert digi == own.digi == 0x500000 | signals | state.board[0]["inputs"]
+        own.alarms = 0x500000  # which an APCI-8001 does not have
+        digi = int(register(state, kernel, _turn_values.SIGNALS, 1, 1.0, float(own.alarms)))
+        assert digi == own.digi == signals | state.board[0]["inputs"]
         assert state.axis[0]["signals"] == 0
     for name in state.axis.dtype.names or ():  # and nothing else shows in it
         if state.axis.dtype[name].kind == "i":
             state.axis[1][name] = 3
-    assert int(uncompiled(_turn_values._status)(state, 1)) == own.status_word == own.status_word & MEANT
+    assert shown() & ~MEANT == 0
 
 
 def test_events_watch_the_board_in_every_scan() -> None:

@@ -16,6 +16,7 @@ from polycnc.conformance import State, load_conformance
 from polycnc.controllers.apci import ErrorReg, pcap
 from polycnc.controllers.apci.sap._commands import AXIS_QUALIFIERS, SYSTEM_VARIABLES
 from support.apci_bench import Bench, difference
+from support.apci_mixture import MIXED, Mixture
 from support.apci_pc import near
 
 WRITES = {name for name in pcap.FUNCTIONS if name.startswith("wr") and f"rd{name[2:]}" in pcap.FUNCTIONS} - {
@@ -834,6 +835,9 @@ def programs(b: Bench) -> None:
     b.step(20)
 
 
+for seed in (1, 2, 3, 4):
+    SCENES[f"mixed{seed}"] = (MIXED, lambda b, seed=seed: Mixture(b, seed).run(36))
+
 WITH_PROGRAM = ("values", "jogs", "steppers", "queues", "overrides")
 
 # What the scenes show of the manual: these parts of the inventory, without what needs no board at work.
@@ -841,12 +845,16 @@ PARTS = re.compile(
     r"2\.\d|PCAP functions|ctru|axst|digi|rddigib|ErrorReg|ifs|S profile|ssf|digo|gettskinfo|Functions named"
     r"|Digital input|MODEREG|SAP|rw_SymPas|Axis |wrdigob|Cross-function|Numeric facts"
 )
-RECORDS = re.compile(r"apci\.(TSRP|LMP|CMP|HMP|HMP3D|TRU)\.(?!epc|scratch|an)")
+RECORDS = re.compile(
+    r"apci\.(TSRP|LMP|CMP|HMP|HMP3D|TRU|CBCNCT)\.(?!epc|scratch|an)|apci\.(LMP|CMP|HMP|HMP3D|TRU|AS|AS\.unoa|AS\.san)$"
+    r"|apci\.(SPDBUF|CDBUF|CIBUF|CBCNCT|CNCTS|InterruptRoutine|rwmos|sap|sap\.multitasking|pcap\.general\.units)$"
+    r"|apci\.CNCTS\.(errnum|errline|running|csrcline|running\.bit[03])$"
+)
 ELSEWHERE = re.compile(
     r"(apci|sap)\.(\w*Boot\w*|CardSelect|MsgToScreen|getEnvStr|Init\w+|mcuinit|MCUG3_Reset\w+|txbf\w*|rdepc"
     r"|scp|stepcnct|stopcnct|wrci|ErrorReg\.(4|6|11|14|20)\.\w+|const\.(eeprom|cncount|cbsize|taskstr|spdsize|phithreshold)"
-    r"|rule\.(versions|toolradius_spline|relays|commonpersist)|scope|comment|named_axis_args|qualifier_access|STOPCNCT"
-    r"|spoolnames|errors|EVENT|task_roles)"
+    r"|rule\.(versions|toolradius_spline|relays|commonpersist)|scope|comment|STOPCNCT"
+    r"|spoolnames|errors|task_roles)"
 )
 CONFORMANCE = load_conformance()
 ROWS = [

@@ -42,6 +42,19 @@ def test_slow():
         pass
 """
 
+# As if the package had a plugin for pytest, which imports those in its own way; and as our own suite does.
+CONFTEST = """
+import gc
+
+import pytest
+
+pytest.register_assert_rewrite("demo")
+
+
+def pytest_collection_finish():
+    gc.freeze()
+"""
+
 
 def test_every_kind_of_change_is_made_and_nothing_else_is_touched() -> None:
     assert [(each.kind, each.lines[0], each.new.decode()) for each in mutants_of(MODULE)] == [
@@ -92,6 +105,7 @@ def repository(tmp_path: Path) -> Path:
         ("src/demo/thing.py", MODULE.decode()),
         ("tests/unit/test_thing.py", TESTS),
         ("tests/unit/test_other.py", "def test_other():\n    pass\n"),
+        ("tests/conftest.py", CONFTEST),
         ("pyproject.toml", "[tool.pytest.ini_options]\npythonpath = ['src']\n"),
     ):
         (root / name).parent.mkdir(parents=True, exist_ok=True)

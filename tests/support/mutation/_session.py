@@ -29,7 +29,18 @@ COPIED = (
     "pyproject.toml",
     "mkdocs.yml",
 )
-PYTEST = ["-q", "-p", "no:cacheprovider", "-p", "no:xdist", "-p", "no:benchmark", "-o", "timeout=0"]
+PYTEST = [
+    "-q",
+    "--assert=plain",
+    "-p",
+    "no:cacheprovider",
+    "-p",
+    "no:xdist",
+    "-p",
+    "no:benchmark",
+    "-o",
+    "timeout=0",
+]
 REACH_LIMIT_S = 3600.0
 
 

@@ -14,36 +14,12 @@ from polycnc.controllers.apci.board._system_file import SystemFile
 from polycnc.controllers.apci.board._units import seconds
 from polycnc.controllers.apci.core._compiled_entries import change_override
 from polycnc.controllers.apci.core._motion import profile_velocity
-from polycnc.controllers.apci.core._registers import Axst, Digi
-from polycnc.controllers.apci.core._state import LEFT, RIGHT, BoardState
+from polycnc.controllers.apci.core._registers import Axst, Digi, assigned_inputs
+from polycnc.controllers.apci.core._state import BoardState
+from polycnc.controllers.apci.core._status_word import status_word
 from polycnc.kernel import ADDED, SHORT_OVERSHOOT, KernelState, move_to
 
 _AT_ONCE = 1e9  # 1/s: how steep an offset that moves with a velocity of its own begins
-# In the order of `Axis.status_word`.
-_STATUS_BITS = tuple(
-    map(
-        int,
-        (
-            Axst.eo,
-            Axst.dnr,
-            Axst.lslh,
-            Axst.lsrh,
-            Axst.lsls,
-            Axst.lsrs,
-            Axst.mpe,
-            Axst.dhef,
-            Axst.cef,
-            Axst.pe,
-            Axst.cl,
-            Axst.ip,
-            Axst.ui,
-            Axst.lpsf,
-            Axst.referenced,
-            Axst.refh,
-            Axst.saf,
-        ),
-    )
-)
 
 
 class Axis:
@@ -98,7 +74,7 @@ class Axis:
         self.zero_offsets = [0.0] * 5
         self.ControllerFlags = 0
         self.GCR = 0
-        self.alarms = 0  # of an encoder that evaluates its signals: digi bits AEA to AES
+        self._alarms = 0
 
     # ------------------------------------------------------------------ parameters with a meaning of their own
 
@@ -274,28 +250,17 @@ class Axis:
     @property
     def status_word(self) -> int:
         """Axis status word as a number, quickly: programs poll it."""
-        row, plan, inputs = self.row, self._state.plan[self.index], self._inputs()
-        drive_ready = int(plan["DR"])
-        status = (
-            inputs & int(plan["EO"]),
-            drive_ready and inputs & drive_ready != drive_ready,
-            row["hard_limit"] & LEFT,
-            row["hard_limit"] & RIGHT,
-            row["soft_limit"] & LEFT,
-            row["soft_limit"] & RIGHT,
-            row["position_error"],
-            row["dhef"],
-            row["cef"],
-            row["pe"],
-            row["closed"],
-            row["in_position"],
-            inputs & int(plan["UI"]),
-            row["lpsf"],
-            row["referenced"],
-            inputs & int(plan["REF"]),
-            row["saf"],
-        )
-        return sum(bit for bit, value in zip(_STATUS_BITS, status, strict=True) if value)
+        self._inputs()  # an error in ifs takes them away
+        return status_word(self._state, self.index)
+
+    @property
+    def alarms(self) -> int:
+        """Alarms of an encoder that evaluates its signals, digi bits AEA to AES, on boards that have them."""
+        return self._alarms
+
+    @alarms.setter
+    def alarms(self, bits: int) -> None:
+        self._alarms = bits & assigned_inputs(self._config.type_number)
 
     @property
     def digi(self) -> Digi:

@@ -74,6 +74,7 @@ def load_parameters(board: CommandedBoard, system: SystemFile) -> None:
     row["trovrst"] = planned.trovrst
     row["mode_register"] = int(system.modereg)
     row["inverted"] = system.inverted_inputs
+    row["inputs"] = row["external"] ^ row["inverted"]
     row["outputs"] = system.outputs_at_reset
     board.nfrax = system.nfrax
 

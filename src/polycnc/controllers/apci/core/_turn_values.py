@@ -9,16 +9,14 @@ import math
 
 from polycnc.controllers.apci.core import _turn_state as ts
 from polycnc.controllers.apci.core._motion import axis_velocity
-from polycnc.controllers.apci.core._registers import Axst
 from polycnc.controllers.apci.core._state import (
-    LEFT,
     MOVE,
-    RIGHT,
     SPOOL_BYTES,
     SPOOL_ENTRIES,
     TABLE,
     BoardState,
 )
+from polycnc.controllers.apci.core._status_word import status_word
 from polycnc.controllers.apci.core._turn_state import BOOLEAN, DOUBLE, INTEGER, Turns
 from polycnc.kernel import KernelState, compiled
 
@@ -31,21 +29,6 @@ _MASK = (1 << 32) - 1
 _PARTS = 2.0**52  # of a double between two powers of 2
 _SMALLEST = 2.0**-1022
 _GREATEST_POWER = 709.0  # of e that is a double
-
-_STATUS_BITS = (
-    Axst.mpe,
-    Axst.dhef,
-    Axst.cef,
-    Axst.pe,
-    Axst.cl,
-    Axst.ip,
-    Axst.lpsf,
-    Axst.referenced,
-    Axst.saf,
-)
-_MPE, _DHEF, _CEF, _PE, _CL, _IP, _LPSF, _REFERENCED, _SAF = map(int, _STATUS_BITS)
-_EO, _DNR, _UI, _REFH = int(Axst.eo), int(Axst.dnr), int(Axst.ui), int(Axst.refh)
-_LSLH, _LSRH, _LSLS, _LSRS = int(Axst.lslh), int(Axst.lsrh), int(Axst.lsls), int(Axst.lsrs)
 
 
 @compiled
@@ -182,30 +165,6 @@ def of_one(what: int, a: float, kind: int) -> tuple[float, int]:
 
 
 @compiled
-def _status(b: BoardState, i: int) -> int:
-    """Return the status word of axis `i`."""
-    row, plan, inputs = b.axis[i], b.plan[i], b.board[0]["inputs"]
-    word = _EO if inputs & plan["EO"] != 0 else 0
-    word |= _DNR if inputs & plan["DR"] != plan["DR"] else 0
-    word |= _LSLH if row["hard_limit"] & LEFT != 0 else 0
-    word |= _LSRH if row["hard_limit"] & RIGHT != 0 else 0
-    word |= _LSLS if row["soft_limit"] & LEFT != 0 else 0
-    word |= _LSRS if row["soft_limit"] & RIGHT != 0 else 0
-    word |= _MPE if row["position_error"] != 0 else 0
-    word |= _DHEF if row["dhef"] != 0 else 0
-    word |= _CEF if row["cef"] != 0 else 0
-    word |= _PE if row["pe"] != 0 else 0
-    word |= _CL if row["closed"] != 0 else 0
-    word |= _IP if row["in_position"] != 0 else 0
-    word |= _UI if inputs & plan["UI"] != 0 else 0
-    word |= _LPSF if row["lpsf"] != 0 else 0
-    word |= _REFERENCED if row["referenced"] != 0 else 0
-    word |= _REFH if inputs & plan["REF"] != 0 else 0
-    word |= _SAF if row["saf"] != 0 else 0
-    return int(word)
-
-
-@compiled
 def _moves(b: BoardState, i: int) -> int:
     """Return the number of motion commands in the spooler of axis `i`."""
     moves = 0
@@ -230,7 +189,7 @@ def register(b: BoardState, state: KernelState, what: int, i: int, factor: float
     if what == DIFFERENCE:
         return float(state.servo.row[i]["following_error"])
     if what == STATUS:
-        return wrapped(_status(b, i))
+        return wrapped(status_word(b, i))
     if what == SIGNALS:
         return wrapped(board["inputs"] | row["signals"] | int(alarms))
     if what == OUTPUTS:

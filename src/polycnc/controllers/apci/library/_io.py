@@ -6,7 +6,7 @@ from __future__ import annotations
 
 from polycnc.controllers.apci.board._board import Board
 from polycnc.controllers.apci.board._commanded import BoardAxis
-from polycnc.controllers.apci.core._registers import assigned_inputs, bit_of, with_output
+from polycnc.controllers.apci.core._registers import bit_of, with_output
 from polycnc.controllers.apci.library._call import (
     CODE,
     INT,
@@ -23,10 +23,6 @@ from polycnc.controllers.apci.library._session import Exchange, Session
 from polycnc.controllers.apci.library._table import Rule, read_record, record_pair
 
 
-def _digi(axis: BoardAxis) -> int:
-    return int(axis.digi) & assigned_inputs(axis.board.config.type_number)
-
-
 def _outputs(axis: BoardAxis) -> int:
     return axis.board.outputs
 
@@ -38,7 +34,7 @@ def _set_outputs(axis: BoardAxis, value: int) -> None:
 _OUTPUTS = Rule(put=_set_outputs, polled=True, note="Outputs belong to the board, whatever the axis.")
 
 # fmt: off
-rddigi         = read_record("digi", _digi,    "the digital inputs and the signals of the encoder", "", 52, Rule(polled=True))
+rddigi         = read_record("digi", "digi",   "the digital inputs and the signals of the encoder", "", 52, Rule(polled=True))
 rddigo, wrdigo = record_pair("digo", _outputs, "the digital outputs",                               "", 54, 138, _OUTPUTS)
 # fmt: on
 
@@ -52,7 +48,7 @@ def rdaxstb(session: Session, an: INT, bitnr: INT) -> INT:
 @polled_axis_call
 def rddigib(an: BoardAxis, bitnr: INT) -> INT:
     """Return a digital input or encoder signal, 1 or 0; inputs are 1 to 16 (Manual 002, 4.4.53)."""
-    return bit_of(_digi(an), bitnr)
+    return bit_of(int(an.digi), bitnr)
 
 
 @polled_axis_call

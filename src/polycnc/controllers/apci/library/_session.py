@@ -8,7 +8,7 @@ from __future__ import annotations
 import logging
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from functools import lru_cache, partial
+from functools import partial
 from pathlib import Path
 
 from polycnc.controllers.apci.board._board import Board
@@ -16,12 +16,11 @@ from polycnc.controllers.apci.board._codes import Status, TransferCode
 from polycnc.controllers.apci.board._commanded import BoardAxis
 from polycnc.controllers.apci.board._environment import InterruptLine, Messages, Show
 from polycnc.controllers.apci.board._records import AS, TSRP
-from polycnc.controllers.apci.core._registers import Axst
 from polycnc.controllers.apci.core._scan import INTERRUPT, PROFILE_END
 from polycnc.controllers.apci.pc._board_memory import BoardMemory
 from polycnc.controllers.apci.pc._boot import Application
 from polycnc.controllers.apci.pc._installed import InstalledBoard
-from polycnc.controllers.apci.pc._slots import REVISION, Pc, Slot, revision_numbers
+from polycnc.controllers.apci.pc._slots import REVISION, Pc, Slot, revision_numbers, status_mask
 from polycnc.controllers.apci.sap import CncFileError, read_cnc
 from polycnc.controllers.apci.sap._board_host import BoardTasks
 from polycnc.controllers.library import Refused
@@ -36,7 +35,6 @@ INTERRUPT_LINES = 1
 
 EVENTS = PROFILE_END | INTERRUPT
 RPTODP_SINCE = "V2.5.3.100"
-_STATUS_BITS_SINCE = {Axst.referenced: "V2.5.3.16", Axst.refh: "V2.5.3.47", Axst.saf: "V2.5.3.88"}
 
 _log = logging.getLogger("polycnc.apci")
 
@@ -283,7 +281,7 @@ class Session(AnySession):
 
     def status_of(self, axis: BoardAxis) -> int:
         """Return the status of an axis, without bits that the operating system does not have yet."""
-        return axis.status_word & _status_mask(self.revision)
+        return axis.status_word & status_mask(self.revision)
 
 
 def _in_slot(board: Board) -> InstalledBoard:
@@ -313,11 +311,3 @@ def _load_cnc(memory: BoardMemory | None, board: Board, content: bytes) -> Trans
     if memory is not None:
         memory.keep_program(program.task, content)
     return TransferCode.DONE
-
-
-@lru_cache
-def _status_mask(revision: str) -> int:
-    """Return the bits of axst that a revision of the operating system has."""
-    numbers = revision_numbers(revision)
-    young = (bit for bit, since in _STATUS_BITS_SINCE.items() if revision_numbers(since) > numbers)
-    return Axst.assigned() & ~sum(young)

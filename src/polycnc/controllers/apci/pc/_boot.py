@@ -22,6 +22,7 @@ from polycnc.controllers.apci.pc._slots import (
     Pc,
     Slot,
     revision_numbers,
+    status_mask,
 )
 from polycnc.controllers.library import Code, Elements
 from polycnc.errors import ConfigurationError, UsageError
@@ -210,6 +211,7 @@ class Application:
         for axis in range(slot.board.number_of_axes):
             for name, value in slot.board.axis_parameters(axis).items():
                 setattr(tsrp[axis], name, value)
+            tsrp[axis].axst &= status_mask(slot.revision)
         return InitCode.DONE
 
     def _unreachable(self) -> Code | None:

@@ -5,16 +5,19 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import lru_cache
 from typing import Protocol
 
 from polycnc.controllers.apci.board._codes import BootCode, InitCode, TransferCode
 from polycnc.controllers.apci.board._environment import EnvironmentStrings
 from polycnc.controllers.apci.board._system_file import SystemFile
+from polycnc.controllers.apci.core._registers import Axst
 from polycnc.controllers.apci.pc._board_memory import BoardMemory
 from polycnc.controllers.library import Code
 from polycnc.errors import UsageError
 
 REVISION = "V2.5.3.100"
+_STATUS_BITS_SINCE = {Axst.referenced: "V2.5.3.16", Axst.refh: "V2.5.3.47", Axst.saf: "V2.5.3.88"}
 
 # Faults of the hardware in the order in which they show; the library finds all other codes by itself.
 FAULTS_BEFORE_RESET = (BootCode.DEVICE_ADDRESSES, BootCode.FLASH_ACCESS, BootCode.FLASH_SIZE)
@@ -147,3 +150,11 @@ class Pc:
 def revision_numbers(revision: str) -> tuple[int, ...]:
     """Return the numbers in a revision like V2.5.3.37, for comparison."""
     return tuple(map(int, re.findall(r"\d+", revision)))
+
+
+@lru_cache
+def status_mask(revision: str) -> int:
+    """Return the bits of axst that a revision of the operating system has."""
+    numbers = revision_numbers(revision)
+    young = (bit for bit, since in _STATUS_BITS_SINCE.items() if revision_numbers(since) > numbers)
+    return Axst.assigned() & ~sum(young)

@@ -300,7 +300,8 @@ class Task:
         running = RUNNING * (self.state is State.RUNNING) | HALTED_BY_WRITELN * self._by_writeln
         running |= WAITING * (self.state is State.RUNNING and waits)
         free = CELL_BYTES * max(0, STACK_CELLS - cells - FRAME_CELLS * frames)
-        return TaskStatus(self._errnum, self._errline, free, running, self._line(at))
+        here = at - 1 if waits else at  # a wait is being executed until it ends
+        return TaskStatus(self._errnum, self._errline, free, running, self._line(here))
 
     def _line(self, at: int) -> int:
         return self.program.code[at][2] if self.program is not None else 0
