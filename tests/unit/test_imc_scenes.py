@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable
+from functools import partial
 from itertools import cycle
 from pathlib import Path
 
@@ -17,6 +18,7 @@ from polycnc.conformance import State, load_conformance
 from polycnc.controllers.imc import imclib as lib
 from polycnc.controllers.imc.core._parameters import PARAMETERS, address
 from support.imc_bench import Bench
+from support.imc_walk import CARD_FILE, walk
 
 RECORDED = Path(__file__).parents[1] / "golden" / "imc"
 IF, Q, P1, P2, C = lib.FIFO_SEL
@@ -455,6 +457,10 @@ def limits(b: Bench) -> None:
     b.set(IF, 1, clrencs=-1)
     b.set(IF, emstop=0x11)
     b.step(5)
+
+
+for seed in range(1, 5):
+    SCENES[f"walk{seed}"] = ("ready = true\n" + CARD_FILE, partial(walk, seed=seed, acts=150))
 
 
 # What the scenes show of the manual: all of it but for cards on a network, C types and what no card does.
