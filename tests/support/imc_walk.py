@@ -202,6 +202,6 @@ def walk(b: Bench, seed: int, acts: int) -> None:
         act: Act = r.choice((move, move, write, write, write, home, couple, couple, path, path, other))
         act(b, r, axis)
         if r.random() < 0.7:
-            b.step(r.choice((1, 2, 3, 5, 9)))
-    b.step(5)
-    b.ends = b.ends[24::25] + b.ends[-1:]
+            b.leap(r.choice((1, 2, 3, 5, 9)))
+    b.leap(5)
+    b.ends = b.ends[49::50] + b.ends[-1:]

@@ -460,7 +460,7 @@ def limits(b: Bench) -> None:
 
 
 for seed in range(1, 5):
-    SCENES[f"walk{seed}"] = ("ready = true\n" + CARD_FILE, partial(walk, seed=seed, acts=150))
+    SCENES[f"walk{seed}"] = ("ready = true\n" + CARD_FILE, partial(walk, seed=seed, acts=400))
 
 
 # What the scenes show of the manual: all of it but for cards on a network, C types and what no card does.
