@@ -13,6 +13,7 @@ from support.imc_bench import Bench
 IF, Q, P1, P2, C = lib.FIFO_SEL
 ONE = 65536
 AXES = 4
+OTHERWISE = 'scale_factor = "S16.16"\noverflow = "wrap"\ndelay_unit = "ms"\n'
 CARD_FILE = """
 [[axis]]
 lag_s = 0.004
@@ -32,6 +33,7 @@ parameters = { encpfactor = 0.75, smooth = 3 }
 probe = { first = 11, pitch = 29 }
 parameters = { ciraxis = -1, cirpos = 97, encpctr = 1024 }
 [[axis]]
+probe = { first = 30 }
 lag_s = 0.002
 gain = 120.0
 origin = [12, 40]
@@ -40,21 +42,21 @@ parameters = { pathabs = 0 }
 # What is written to an axis, and the values that it is given.
 AXIS_VALUES: dict[str, Sequence[float]] = {
     "mcsgo": (0,), "pcsgo": (0,), "pcstgvel": (0, 0, 1.75, -2.5), "mcsvel": (0, 1.25), "mcstrack": (0, 0, -1),
-    "pcstrack": (0, -1), "mcstgpos": (-35, 44, 90), "pcstgpos": (-12, 21), "mcsmaxvel": (3.5, 8.25, 100),
-    "mcsaccel": (0.4, 0.9, 2.5), "mcsdecel": (0.3, 1.1, 3), "pcsmaxvel": (2.5, 50), "pcsaccel": (0.6, 2),
+    "pcstrack": (0, -1), "mcstgpos": (-35, 44, 90), "pcstgpos": (-12, 21), "mcsmaxvel": (3.5, 8.25, 100, 0),
+    "mcsaccel": (0.4, 0.9, 2.5), "mcsdecel": (0.3, 1.1, 3, 0), "pcsmaxvel": (2.5, 50), "pcsaccel": (0.6, 2, 0),
     "pcsdecel": (0.7, 1.5), "smooth": (0, 0, 3, 7), "gearratio": (-1.5, 0.625, 2.25), "gearoutmod": (0, -1),
     "gearoutvel": (0, -2.25, 3), "shiftmaster": (0, -1), "haltstep": (0, 0, 0, 1), "haltmode": (0, -1),
-    "biciraxis": (0, -1), "cirpos": (61, 97), "ciraxis": (0, -1), "run": (0, -1, -1), "ena": (0, -1, -1),
-    "homepos": (0, -19, 33), "sethome": (-1,), "clear": (-1,), "engear": (0, 0, -1), "startsyn": (-1, -1, -1, 0),
-    "enasyn": (-1, -1, 0), "gohome": (0, 0, -1), "slaveabs": (0, -1), "syntype": (0, -1), "slavedist": (40, -55),
-    "synsrcvar": (9, 26), "aioctr": (0, 0xF, 0x1F, 0xC01A), "psoftlim": (75, 1 << 30), "nsoftlim": (-70, -1 << 30),
-    "stopfilt": (0xFFFF, 0xFFFF, 0x10F1, 0), "stopmode": (0, 0xFFFF, 5), "exitfilt": (0, 0, 0x1001, 8),
-    "error": (0, 0, 0x40), "breakp": (20, -30), "settlewin": (0, 3), "settlen": (1, 8), "trackwin": (2, 9),
-    "encpfactor": (1, 0.5), "encsfactor": (1, 1.75), "encpctr": (0, 0x400, 0x8000), "vellim": (6, 3000, 3000),
-    "accellim": (2, 3000, 3000), "poserrlim": (12, 65535, 65535), "highvel": (2.5, 5), "lowvel": (0.75, -1.5),
-    "indexNum": (1, 2), "homestpos": (7, -16), "counter": (0,), "capture": (-1,), "clrencs": (-1,),
-    "clraiolat": (5, -1), "popcapfifo": (-1,), "clrcapfifo": (0,), "pathabs": (0, -1), "cirswap": (0,),
-    "aio": (0x5A5A,),
+    "biciraxis": (0, -1), "cirpos": (61, 97, 0), "ciraxis": (0, -1), "run": (0, -1, -1), "ena": (0, -1, -1),
+    "homepos": (0, -19, 33, 2147483600, -2147483620), "sethome": (-1,), "clear": (-1,), "engear": (0, 0, -1),
+    "startsyn": (-1, -1, -1, 0), "enasyn": (-1, -1, 0), "gohome": (0, 0, -1), "slaveabs": (0, -1), "syntype": (0, -1),
+    "slavedist": (40, -55), "synsrcvar": (9, 26, 0), "homeseq": (0, 0x14), "aioctr": (0, 0xF, 0x1F, 0xC01A),
+    "psoftlim": (75, 40), "nsoftlim": (-70, -40), "stopfilt": (0xFFFF, 0xFFFF, 0x10F1, 0), "stopmode": (0, 0xFFFF, 5),
+    "exitfilt": (0, 0, 0x1001, 8), "error": (0, 0, 0x40), "breakp": (20, -30), "settlewin": (0, 3), "settlen": (1, 8),
+    "trackwin": (2, 9), "encpfactor": (1, 0.5), "encsfactor": (1, 1.75, 60000), "encpctr": (0, 0x400, 0x8000),
+    "vellim": (6, 3000, 3000), "accellim": (2, 3000, 3000), "poserrlim": (12, 65535, 65535), "highvel": (2.5, 5),
+    "lowvel": (0.75, -1.5), "indexNum": (1, 2), "homestpos": (7, -16), "counter": (0,), "capture": (-1,),
+    "clrencs": (-1,), "clraiolat": (5, -1), "popcapfifo": (-1,), "clrcapfifo": (0,), "pathabs": (0, -1),
+    "cirswap": (0,), "aio": (0x5A5A,),
 }  # fmt: skip
 CARD_VALUES: dict[str, Sequence[float]] = {
     "hpause": (0, 0, 0, 1), "timer": (40,), "delayus": (30000,), "events": (0,), "clrqfifo": (-1,),
@@ -63,8 +65,8 @@ CARD_VALUES: dict[str, Sequence[float]] = {
     "groupsmooth": (1, 3, 4), "group_x": (1, 3), "group_y": (0, 2), "startpath1": (0, -1, -1),
     "startpath2": (0, -1, -1), "feedrate1": (0, 0.5, 1, 1.25), "feedrate2": (0.75, 1), "pathacc1": (0.5, 2),
     "pathacc2": (0.8,), "segtgvel1": (3, 6.5), "segtgvel2": (2.25, 5), "segendvel1": (0, 1.5), "asseglen1": (0, 1, 2),
-    "segmap_x1": (0, 2), "segmap_y1": (1, 3), "segmap_x2": (2, 1), "segmap_y2": (3, 0), "pathaxisnum1": (0, 2),
-    "pathaxisnum2": (2, 1), "gin1lat": (1, 0xFF), "user16b1": (4, 9),
+    "segmap_x1": (0, 2, 9), "segmap_y1": (1, 3), "segmap_x2": (2, 1), "segmap_y2": (3, 0),
+    "pathaxisnum1": (0, 0, 2, 4), "pathaxisnum2": (2, 1), "gin1lat": (1, 0xFF), "user16b1": (4, 9),
 }  # fmt: skip
 Act: TypeAlias = Callable[[Bench, random.Random, int], object]
 
@@ -76,7 +78,7 @@ def speed(r: random.Random) -> int:
 
 def segment(r: random.Random, arc: bool = False) -> lib.PFIFOSegData:
     """Return a segment of two axes, sometimes of another number."""
-    ends = [r.randint(-60, 60) for _ in range(r.choice((2, 2, 2, 1, 3)) if not arc else 2)]
+    ends = [r.randint(-60, 60) for _ in range(r.choice((2, 2, 2, 1, 3, 4)) if not arc else 2)]
     return lib.PFIFOSegData.of(*ends, center=(r.randint(-9, 9), r.randint(-9, 9)), direction=-r.randint(0, 1))
 
 
@@ -193,7 +195,18 @@ def repair(b: Bench, axis: int) -> None:
 def walk(b: Bench, seed: int, acts: int) -> None:
     """Give so many commands, with some cycles after each."""
     r = random.Random(seed)
-    b.set(IF, segmap_x1=0, segmap_y1=1, segmap_x2=2, segmap_y2=3, startpath1=-1, startpath2=-1, group_y=2)
+    b.set(
+        IF,
+        segmap_x1=0,
+        segmap_y1=1,
+        segmap_z1=2,
+        segmap_a1=3,
+        segmap_x2=2,
+        segmap_y2=3,
+        startpath1=-1,
+        startpath2=-1,
+        group_y=2,
+    )
     for _ in range(acts):
         axis = r.randrange(AXES)
         for each in range(AXES):
