@@ -604,7 +604,7 @@ for number in range(1, 5):
 # What the scenes show of the manual: all of it but for cards on a network, C types and what no card does.
 ELSEWHERE = re.compile(
     r"imc\.(IMC_(FindNetCard|Open\w*|Close)|option\.\w+|status\.(?!IMC_OK|IMC_OUT_OF_RANGE)\w+|type\.(IMC\w*|__int64)|concept\.rbfifo"
-    r"|struct\.NIC_INFO|file\.\w+|const\.(openMode|AXISNUM|limits)|concept\.(library|position_overflow)"
+    r"|struct\.NIC_INFO|file\.\w+|const\.(openMode|AXISNUM|limits)|concept\.library"
     r"|param\.(eventid|eventbase|out1|out2|waitfilt|waitequ|encsctr|aiod|stepmod|dirtime|steptime|clrififo|fixvel|group_[b-m]))"
 )
 CONFORMANCE = load_conformance()
