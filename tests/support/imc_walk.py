@@ -76,6 +76,12 @@ def speed(r: random.Random) -> int:
     return r.choice((0, r.randint(-6 * ONE, 6 * ONE)))
 
 
+def chosen(r: random.Random, values: Sequence[float]) -> float:
+    """Return one of some values; what is set by FFFFh is sometimes set by another number."""
+    value = r.choice(values)
+    return r.choice((-1, -1, 1, 0x300)) if value == -1 else value
+
+
 def segment(r: random.Random, arc: bool = False) -> lib.PFIFOSegData:
     """Return a segment of two axes, sometimes of another number."""
     ends = [r.randint(-60, 60) for _ in range(r.choice((2, 2, 2, 1, 3, 4)) if not arc else 2)]
@@ -160,10 +166,10 @@ def move(b: Bench, r: random.Random, axis: int) -> None:
 def write(b: Bench, r: random.Random, axis: int) -> None:
     """Write some parameters of an axis in one cycle, and one of the card."""
     for name in r.sample(list(AXIS_VALUES), r.choice((1, 1, 2))):
-        b.set(r.choice((IF, IF, IF, Q)), axis, **{name: r.choice(AXIS_VALUES[name])})
+        b.set(r.choice((IF, IF, IF, Q)), axis, **{name: chosen(r, AXIS_VALUES[name])})
     if r.random() < 0.4:
         name = r.choice(list(CARD_VALUES))
-        b.set(r.choice((IF, IF, Q)), 0, **{name: r.choice(CARD_VALUES[name])})
+        b.set(r.choice((IF, IF, Q)), 0, **{name: chosen(r, CARD_VALUES[name])})
 
 
 def other(b: Bench, r: random.Random, axis: int) -> None:

@@ -101,6 +101,15 @@ def test_password_of_4_to_99_characters() -> None:
     assert lib.IMC_OpenUsePassword(0, 1, "12345678")[0] == lib.IMC_PASSWORD_ERROR  # none is stored
     assert lib.IMC_OpenUsePassword(0, 2, long)[0] == lib.IMC_OK
     assert lib.IMC_OpenUsePassword(0, 3, "abcd")[0] == lib.IMC_OK
+    others = (long[:98], long[:98] + "q", "q" + long[1:], "p" * 8)  # every character counts, and their number
+    for card, wrong in (
+        *((2, each) for each in others),
+        (3, "abcD"),
+        (3, "abcde"),
+        (0, "123456789"),
+        (0, "1234567"),
+    ):
+        assert lib.IMC_OpenUsePassword(0, card, wrong) == (lib.IMC_PASSWORD_ERROR, None)
     for wrong in ("", "abc", "p" * 100, "größer"):
         assert lib.IMC_OpenUsePassword(0, 0, wrong) == (lib.IMC_OUT_OF_RANGE, None)
     assert lib.IMC_OpenUsePassword(0, 9, "12345678")[0] == lib.IMC_DEVICE_NOT_FOUND

@@ -6,11 +6,12 @@ import math
 
 import pytest
 
-from polycnc.controllers.imc.core._instructions import Write, WriteMany
+from polycnc.controllers.imc.core._instructions import Segment, Write, WriteMany
 from polycnc.controllers.imc.core._parameters import address
 from support.imc_card import (
     FLAG,
     IFIFO,
+    PFIFO1,
     QFIFO,
     move_absolute,
     move_relative,
@@ -390,6 +391,31 @@ def test_an_axis_out_of_run_plans_nothing_and_one_without_ena_moves_nothing() ->
     assert card.read("mcsgo", 1) == 0
     assert [card.kernel.servo.actual[i] for i in range(3)] == [100, 0, 0]
     assert (card.read("encp", 2), card.read("poserr", 2)) == (0, 100)
+
+
+@shows("run ena hpause startgroup contouring groupnum groupsmooth group_x")
+@pytest.mark.covers("imc.param.pfifoenable", "imc.param.segabs", "imc.type.F16")
+@pytest.mark.parametrize("flag", [FLAG, 1, 0x2000])
+def test_any_number_but_0_sets_the_flags_of_an_axis_and_of_the_card(flag: int) -> None:
+    card = ready_card()
+    set_now(card, ("run", 0, 1), ("ena", 0, 1))
+    card.advance(1)
+    set_now(card, ("run", flag, 1), ("ena", flag, 1), ("mcstgvel", -3, 1))
+    card.advance(8)
+    set_now(card, ("hpause", flag))
+    card.advance(9)
+    here = [card.read("curpos", 1), card.kernel.servo.actual[1], card.read("curvel", 1)]
+    assert here == [-24, -24, 0]  # 1 + 2 + 6 * 3, and 2 + 1 to rest
+    set_now(card, ("hpause", 0), ("mcstgvel", 0, 1))
+    set_now(card, ("groupnum", 1), ("group_x", 1), ("groupsmooth", 4), ("startgroup", flag))
+    assert card.push_points([-20])
+    card.advance(2)
+    assert (card.read("curpos", 1), card.read("contouring", 1)) == (-34, FLAG)
+    card.advance(8)
+    set_now(card, ("startgroup", 0), ("segmap_x1", 1), ("pathabs", flag, 1), ("startpath1", flag))
+    assert card.push(PFIFO1, Segment((-61,)))
+    card.wait()
+    assert card.kernel.servo.actual[1] == -61
 
 
 @shows("curpos encp mcsmaxvel moving")
