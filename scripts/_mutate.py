@@ -106,6 +106,8 @@ def main() -> int:
             reach = session.reach(everything, tests, slowest_s=options.slowest, limit_s=options.limit)
         except RuntimeError as error:
             sys.exit(f"scripts/mutate: {error}\nRun scripts/test first.")
+        if not reach.tests:
+            sys.exit("scripts/mutate: these tests do not even import the modules\nName others with --tests.")
         print(
             f"{count} changes, {len(reach.times_s)} tests in {len(tests)} files, "
             f"{time.monotonic() - begun:.0f} s to see what they reach",

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import Any
 
+import pytest
+
 from polycnc.controllers.imc.card._card import Card, Fifo
 from polycnc.controllers.imc.card._config import CardConfig, parse_card
 from polycnc.controllers.imc.core._event_codes import EventCommand, EventType
@@ -19,6 +21,11 @@ from polycnc.controllers.imc.core._parameters import address, parameter
 
 IFIFO, QFIFO, PFIFO1, PFIFO2 = Fifo.SEL_IFIFO, Fifo.SEL_QFIFO, Fifo.SEL_PFIFO1, Fifo.SEL_PFIFO2
 FLAG = -1
+
+
+def shows(names: str) -> pytest.MarkDecorator:
+    """Return the claim of a test that it notices when one of these parameters does not do what it should."""
+    return pytest.mark.covers(*(f"imc.param.{name}" for name in names.split()))
 
 
 def ready_card(text: str = "", **given: Any) -> Card:

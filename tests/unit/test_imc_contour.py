@@ -5,7 +5,18 @@ from __future__ import annotations
 import pytest
 
 from polycnc.controllers.imc.core._parameters import address
-from support.imc_card import FLAG, IFIFO, enable_path, line, move_absolute, ready_card, send, set_now, trace
+from support.imc_card import (
+    FLAG,
+    IFIFO,
+    enable_path,
+    line,
+    move_absolute,
+    ready_card,
+    send,
+    set_now,
+    shows,
+    trace,
+)
 
 
 def group(card, *axes: int, cycles: int = 20) -> None:  # type: ignore[no-untyped-def]
@@ -15,6 +26,8 @@ def group(card, *axes: int, cycles: int = 20) -> None:  # type: ignore[no-untype
     set_now(card, ("groupnum", len(axes)), ("groupsmooth", cycles))
 
 
+@pytest.mark.covers("imc.IMC_AddContourData")
+@shows("curpos")
 @pytest.mark.covers(
     "imc.concept.cfifo",
     "imc.concept.contour",
@@ -39,6 +52,8 @@ def test_each_point_is_spread_evenly_over_its_cycles() -> None:
     assert [card.read("contouring", i) for i in range(3)] == [0, 0, 0]
 
 
+@pytest.mark.covers("imc.IMC_AddContourData", "imc.concept.contour")
+@shows("curpos startgroup")
 @pytest.mark.covers(*(f"imc.param.group_{name}" for name in "xyzabcdefghijklm"))
 def test_each_of_sixteen_coordinates_moves_its_axis() -> None:
     card = ready_card(number_of_axes=16)
@@ -50,6 +65,7 @@ def test_each_of_sixteen_coordinates_moves_its_axis() -> None:
     assert [card.read("curpos", i) for i in axes] == [10 * (k + 1) for k in range(16)]
 
 
+@shows("curpos startgroup")
 @pytest.mark.covers("imc.param.contouring")
 def test_contouring_shows_in_the_axes_of_the_group_while_points_are_carried_out() -> None:
     card = ready_card()
@@ -64,6 +80,8 @@ def test_contouring_shows_in_the_axes_of_the_group_while_points_are_carried_out(
     assert [card.read("curpos", i) for i in range(4)] == [0, -168, 0, 120]
 
 
+@pytest.mark.covers("imc.concept.cfifo", "imc.concept.contour")
+@shows("curpos startgroup")
 @pytest.mark.covers("imc.param.contouring")
 def test_an_empty_queue_ends_contouring_and_new_points_go_on() -> None:
     card = ready_card()
@@ -82,6 +100,7 @@ def test_an_empty_queue_ends_contouring_and_new_points_go_on() -> None:
     assert card.read("curpos") == 6 + 50 * 2 // 3
 
 
+@shows("startgroup")
 @pytest.mark.covers("imc.param.vellim", "imc.param.error")
 @pytest.mark.covers("imc.param.moving", "imc.param.run")
 def test_too_large_a_displacement_is_a_speed_error() -> None:
@@ -94,6 +113,8 @@ def test_too_large_a_displacement_is_a_speed_error() -> None:
     assert (card.read("error"), card.read("run"), card.read("moving")) == (0x2000, 0, 0)
 
 
+@pytest.mark.covers("imc.concept.contour")
+@shows("startgroup")
 def test_an_odd_displacement_arrives_whole() -> None:
     card = ready_card()
     group(card, 0, 1, cycles=7)
@@ -103,6 +124,8 @@ def test_an_odd_displacement_arrives_whole() -> None:
     assert [card.read_raw(224, i, 3) for i in (0, 1)] == [4 * 65536, -4 * 65536]
 
 
+@pytest.mark.covers("imc.IMC_GetCapData")
+@shows("mcsgo")
 @pytest.mark.covers("imc.concept.capfifo", "imc.bit.encpctr.10", "imc.param.encpctr")
 @pytest.mark.covers("imc.param.mcsmaxvel")
 def test_probe_pulses_are_captured_while_capture_is_on() -> None:
@@ -153,6 +176,7 @@ def test_a_write_captures_the_position_of_this_moment(name: str, value: int) -> 
     assert card.read_capture(0, 5) == ((here,), 0)
 
 
+@pytest.mark.covers("imc.IMC_GetCapData", "imc.bit.encpctr.10", "imc.concept.capfifo")
 @pytest.mark.covers("imc.param.encpctr")
 @pytest.mark.covers("imc.param.encp", "imc.param.mcstgvel")
 def test_a_touch_of_the_probe_captures_once() -> None:
@@ -165,6 +189,7 @@ def test_a_touch_of_the_probe_captures_once() -> None:
     assert card.read_raw(address("counter")) == 1
 
 
+@shows("curpos")
 @pytest.mark.covers("imc.param.aioctr", "imc.param.curvel", "imc.param.error", "imc.param.startgroup")
 def test_an_axis_that_is_stopped_ends_the_contour_and_does_not_jump_later() -> None:
     card = ready_card("number_of_axes = 4\n[[axis]]\nlimit_positive = 70.0\n")
@@ -202,6 +227,7 @@ def test_an_axis_out_of_run_keeps_nothing_of_the_contour_for_a_later_path() -> N
     assert card.read("curpos") == 100
 
 
+@shows("startgroup")
 @pytest.mark.covers("imc.param.emstop", "imc.param.ena", "imc.param.error", "imc.param.run")
 def test_an_emergency_stop_ends_the_contour_for_good() -> None:
     card = ready_card()

@@ -13,7 +13,18 @@ from polycnc.controllers.imc.core._event_codes import EventCommand, EventType, c
 from polycnc.controllers.imc.core._events import scale
 from polycnc.controllers.imc.core._instructions import Event, InstallEvents
 from polycnc.controllers.imc.core._parameters import address
-from support.imc_card import FLAG, IFIFO, QFIFO, event, install, move_absolute, ready_card, send, set_now
+from support.imc_card import (
+    FLAG,
+    IFIFO,
+    QFIFO,
+    event,
+    install,
+    move_absolute,
+    ready_card,
+    send,
+    set_now,
+    shows,
+)
 from support.often import share
 
 A16, B16, R16 = (address(f"user16b{k}") for k in (1, 2, 0))
@@ -107,6 +118,9 @@ def test_every_command_computes_in_twos_complement(command: str, immediate: bool
         assert stored == expected, (a, b)
 
 
+@pytest.mark.covers(
+    "imc.event.CMD_SCA32", "imc.event.CMD_SCA48", "imc.event.CMD_SCA32i", "imc.event.CMD_SCA48i"
+)
 @settings(deadline=None, max_examples=share(100))
 @given(st.integers(-(2**47), 2**47 - 1), st.integers(-(2**47), 2**47 - 1))
 def test_scaling_is_exact_and_rounds_down(value: int, factor: int) -> None:
@@ -115,6 +129,14 @@ def test_scaling_is_exact_and_rounds_down(value: int, factor: int) -> None:
         assert scale(value, factor) == exact
 
 
+@pytest.mark.covers(
+    "imc.event.CMD_MUL32iL",
+    "imc.event.CMD_MUL32iA",
+    "imc.event.CMD_SET48",
+    "imc.event.CMD_SCA32i",
+    "imc.struct.EventInfo.Src2.data32",
+    "imc.struct.EventInfo.Src2.data48",
+)
 def test_numbers_of_the_manual() -> None:
     card = ready_card(number_of_axes=1)
     assert _result(card, "MUL32iL", True, 1_000_000, 22_222) == (747_163_520, 747_163_520)
@@ -132,6 +154,10 @@ def test_numbers_of_the_manual() -> None:
     ]
 
 
+@pytest.mark.covers(
+    "imc.event.CMD_ADD32", "imc.etype.IMC_Allways", "imc.struct.EventInfo.Src2.param", "imc.IMC_InstallEvent"
+)
+@shows("user32b0")
 def test_positions_of_two_axes_are_added_every_cycle() -> None:
     card = ready_card()
     install(card, event("ADD32", first=225, first_axis=0, second=225, second_axis=1, target=R32))
@@ -151,6 +177,7 @@ CONDITIONS = {
 }
 
 
+@shows("user32b0 user32b1 user32b2")
 @pytest.mark.covers(
     "imc.etype.IMC_Allways",
     *(f"imc.etype.IMC_{kind}_{name}" for kind in ("Edge", "IF") for name in CONDITIONS),
@@ -178,6 +205,7 @@ def test_levels_act_as_long_and_edges_when_their_condition_comes(name: str) -> N
     assert edges > 0
 
 
+@shows("user32b1")
 @pytest.mark.covers(
     "imc.etype.IMC_Edge_Carry",
     "imc.etype.IMC_Edge_NotCarry",
@@ -277,6 +305,7 @@ def test_conditions_at_the_ends_of_the_numbers() -> None:
             assert edges == wanted & ~sum(1 << k for k, name in enumerate(NAMES) if name in held.split())
 
 
+@shows("user32b0 user32b1")
 @pytest.mark.covers("imc.concept.event_flags", "imc.etype.IMC_Allways", "imc.event.CMD_CMP32i")
 def test_a_conditional_event_does_not_change_what_the_next_one_tests() -> None:
     card = ready_card(number_of_axes=1)
@@ -295,6 +324,10 @@ def test_a_conditional_event_does_not_change_what_the_next_one_tests() -> None:
     assert card.read("user32b0") == 9
 
 
+@pytest.mark.covers(
+    "imc.event.CMD_AND16i", "imc.event.CMD_OR16i", "imc.etype.IMC_Edge_Zero", "imc.etype.IMC_Edge_NotZero"
+)
+@shows("user16b0 user16b1")
 @pytest.mark.covers("imc.concept.event_space")
 def test_several_conditional_events_test_the_same_unconditional_one() -> None:
     card = ready_card(number_of_axes=1)
@@ -312,6 +345,14 @@ def test_several_conditional_events_test_the_same_unconditional_one() -> None:
     assert card.read("user16b0") == 8
 
 
+@pytest.mark.covers(
+    "imc.etype.IMC_Edge_GreatEqu",
+    "imc.etype.IMC_IF_GreatEqu",
+    "imc.event.CMD_CMP32i",
+    "imc.event.CMD_SET16",
+    "imc.IMC_InstallEvent",
+)
+@shows("user16b0")
 def test_an_event_sets_a_flag_once_when_a_position_is_reached_or_in_every_cycle() -> None:
     for kind, again in (("Edge_GreatEqu", 0), ("IF_GreatEqu", FLAG)):
         card = ready_card()
@@ -331,6 +372,9 @@ def test_an_event_sets_a_flag_once_when_a_position_is_reached_or_in_every_cycle(
 
 
 @pytest.mark.covers(
+    "imc.event.CMD_SET32", "imc.event.CMD_SET16", "imc.etype.IMC_Edge_Great", "imc.IMC_InstallEvent"
+)
+@pytest.mark.covers(
     "imc.param.curpos", "imc.param.curvel", "imc.param.homepos", "imc.param.mcstgvel", "imc.param.sethome"
 )
 def test_an_event_stops_an_axis_and_sets_its_origin() -> None:
@@ -349,6 +393,8 @@ def test_an_event_stops_an_axis_and_sets_its_origin() -> None:
     assert card.kernel.servo.actual[0] > 500
 
 
+@pytest.mark.covers("imc.IMC_InstallEvent")
+@shows("user32b0")
 @pytest.mark.covers(
     "imc.param.events", "imc.etype.IMC_Allways", "imc.event.CMD_ADD32i", "imc.concept.event_space"
 )
@@ -370,6 +416,7 @@ def test_the_space_holds_128_events_and_0_removes_them() -> None:
     assert (card.read("events"), card.read("user32b0")) == (0, before + 256)
 
 
+@pytest.mark.covers("imc.struct.EventInfo", "imc.IMC_InstallEvent")
 @pytest.mark.covers("imc.param.events", "imc.param.ticks")
 def test_a_destination_of_0_stores_nothing() -> None:
     card = ready_card()
@@ -407,6 +454,14 @@ def test_a_card_may_take_factors_with_16_fraction_bits(command: str, bits: int) 
             assert _result(card, command, True, value, factor)[0] == value * factor >> fraction
 
 
+@pytest.mark.covers(
+    "imc.concept.event_flags",
+    "imc.etype.IMC_IF_NotCarry",
+    "imc.etype.IMC_IF_Zero",
+    "imc.etype.IMC_IF_Carry",
+    "imc.etype.IMC_IF_NotZero",
+    "imc.etype.IMC_IF_Great",
+)
 def test_before_the_first_result_of_a_cycle_there_is_neither_a_value_nor_a_carry() -> None:
     card = ready_card()
     kinds = ("IF_Carry", "IF_NotCarry", "IF_Zero", "IF_NotZero", "IF_Great")

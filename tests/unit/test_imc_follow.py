@@ -25,6 +25,7 @@ from support.imc_card import (
     send,
     set_now,
     setting,
+    shows,
     trace,
 )
 
@@ -45,6 +46,7 @@ def gear(card, ratio: float, source: int = CURVEL, master: int = 0, axis: int = 
     )
 
 
+@pytest.mark.covers("imc.IMC_GearFree")
 @pytest.mark.covers("imc.param.gearratio", "imc.param.mcsaccel", "imc.param.mcsdecel")
 @pytest.mark.covers("imc.param.engear", "imc.param.master", "imc.param.gearsrc", "imc.concept.gear_law")
 @pytest.mark.covers("imc.param.mcsslope", "imc.param.mcstgvel", "imc.param.mcsvel")
@@ -66,6 +68,7 @@ def test_a_free_gear_ramps_to_ratio_times_the_source_and_follows_a_new_ratio() -
     assert card.read("mcsvel", 1) == -card.read("mcsvel", 2) < -20
 
 
+@pytest.mark.covers("imc.IMC_GearFree", "imc.type.S16.32")
 @pytest.mark.covers("imc.param.gearratio", "imc.concept.gear_law")
 @pytest.mark.covers("imc.param.mcspos")
 def test_a_ratio_is_exact_over_any_time() -> None:
@@ -85,6 +88,8 @@ def test_a_ratio_is_exact_over_any_time() -> None:
     assert abs(card.read_raw(address("mcspos") - 1, 1, 3)) <= 1
 
 
+@pytest.mark.covers("imc.IMC_GearFree", "imc.IMC_HandWheel")
+@shows("curpos")
 @pytest.mark.covers(*(f"imc.sourcetype.{k}" for k in range(5)), "imc.const.sourcetype")
 @pytest.mark.parametrize(
     ("source", "moved"), [(CURVEL, 1100), (ENCPVEL, 1100), (MCSVEL, 1000), (PCSVEL, 100), (ENCSVEL, 7)]
@@ -104,6 +109,8 @@ def test_a_gear_follows_the_parameter_that_it_points_to(source: int, moved: int)
     assert card.read("curpos", 1) == moved
 
 
+@pytest.mark.covers("imc.IMC_Phasing", "imc.IMC_GearFree", "imc.concept.superposition")
+@shows("curpos")
 def test_phasing_of_a_master_does_not_reach_a_slave_of_its_main_system() -> None:
     for source, slave in ((MCSVEL, 0), (CURVEL, 50)):
         card = ready_card()
@@ -114,6 +121,8 @@ def test_phasing_of_a_master_does_not_reach_a_slave_of_its_main_system() -> None
         assert (card.read("curpos", 0), card.read("curpos", 1)) == (100, slave)
 
 
+@pytest.mark.covers("imc.IMC_GearFree", "imc.concept.gear_law")
+@shows("mcstgvel")
 @pytest.mark.covers("imc.param.gearoutmod", "imc.param.gearoutvel", "imc.param.engear")
 @pytest.mark.parametrize(("mode", "speed", "after"), [(0, 3, 5), (FLAG, 3, 3), (FLAG, 0, 0)])
 @pytest.mark.covers("imc.param.mcsvel")
@@ -130,6 +139,8 @@ def test_a_slave_that_leaves_keeps_its_speed_or_takes_another(mode: int, speed: 
     assert card.read("mcsvel", 1) == after
 
 
+@pytest.mark.covers("imc.IMC_HandWheel")
+@shows("curpos master")
 @pytest.mark.covers("imc.param.engear")
 @pytest.mark.covers("imc.param.encs", "imc.param.encsvel", "imc.param.encsfactor", "imc.param.clrencs")
 def test_a_handwheel_moves_its_axis_by_counts_times_ratio() -> None:
@@ -151,6 +162,8 @@ def test_a_handwheel_moves_its_axis_by_counts_times_ratio() -> None:
     assert (card.read("encs", 3), card.read("curpos", 0)) == (1, 10)
 
 
+@pytest.mark.covers("imc.IMC_HandWheel")
+@shows("curpos")
 @pytest.mark.covers("imc.param.encs")
 def test_a_steady_handwheel_gives_a_steady_speed() -> None:
     card = ready_card()
@@ -168,6 +181,8 @@ def _in_distance(card, start: bool) -> None:  # type: ignore[no-untyped-def]
         send(card, IFIFO, ("startsyn", FLAG, 1))
 
 
+@pytest.mark.covers("imc.IMC_GearInDist")
+@shows("curvel engear mcstgvel startsyn")
 @pytest.mark.covers(
     "imc.concept.gear_dist_law", "imc.param.synsrc", "imc.param.synaxis", "imc.param.synsrcvar"
 )
@@ -189,6 +204,8 @@ def test_a_gear_engages_over_a_distance_of_its_pacing_parameter() -> None:
     assert (card.read("startsyn", 1), card.read("enasyn", 1), card.read("engear", 1)) == (0, 0, FLAG)
 
 
+@pytest.mark.covers("imc.IMC_GearInDist")
+@shows("curpos moving")
 @pytest.mark.covers("imc.param.startsyn", "imc.concept.startsyn")
 def test_nothing_engages_before_startsyn() -> None:
     card = ready_card()
@@ -198,6 +215,8 @@ def test_nothing_engages_before_startsyn() -> None:
     assert (card.read("curpos", 1), card.read("moving", 1)) == (0, 0)
 
 
+@pytest.mark.covers("imc.IMC_GearInDist", "imc.IMC_InstallEvent", "imc.concept.startsyn")
+@shows("curpos curvel mcstgvel startsyn")
 def test_an_event_starts_the_engagement() -> None:
     card = ready_card()
     _in_distance(card, start=False)
@@ -213,6 +232,8 @@ def test_an_event_starts_the_engagement() -> None:
     assert card.read("curvel", 1) == 10
 
 
+@pytest.mark.covers("imc.IMC_GearInTime", "imc.concept.startsyn")
+@shows("curvel mcstgvel")
 @pytest.mark.covers("imc.param.synsrc", "imc.param.synsrcvar", "imc.param.enasyn", "imc.param.startsyn")
 @pytest.mark.covers("imc.concept.gear_time_law")
 @pytest.mark.covers("imc.param.ticks")
@@ -238,6 +259,8 @@ def _timed(card, cycles: int, axis: int = 1) -> None:  # type: ignore[no-untyped
     set_now(card, ("synsrc", address("ticks"), axis), ("synsrcvar", cycles, axis), ("enasyn", FLAG, axis))
 
 
+@pytest.mark.covers("imc.IMC_MoveTP", "imc.concept.startsyn")
+@shows("curpos curvel")
 @pytest.mark.covers("imc.param.synsrcvar", "imc.param.enasyn", "imc.param.startsyn")
 @pytest.mark.covers("imc.param.syntype", "imc.param.slavedist", "imc.param.slaveabs", "imc.concept.sync_laws")
 @pytest.mark.parametrize(("absolute", "distance", "end"), [(0, 5000, 5100), (FLAG, 5000, 5000), (0, -70, 30)])
@@ -261,6 +284,8 @@ def test_a_distance_is_moved_in_a_time_and_ends_at_rest(absolute: int, distance:
     assert (card.read("curvel", 1), card.read("moving", 1), card.read("curpos", 1)) == (0, 0, end)
 
 
+@pytest.mark.covers("imc.IMC_MovePP", "imc.concept.startsyn", "imc.concept.sync_laws")
+@shows("curpos moving")
 @pytest.mark.covers(
     "imc.param.syntype", "imc.param.synsrc", "imc.param.synaxis", "imc.param.synsrcvar", "imc.param.slavedist"
 )
@@ -296,6 +321,8 @@ def test_a_distance_is_moved_within_the_distance_of_another_parameter(name: str)
     assert (card.read("curpos", 1), card.read("moving", 1), card.read("startsyn", 1)) == (500, 0, 0)
 
 
+@pytest.mark.covers("imc.IMC_MoveTV", "imc.concept.sync_laws")
+@shows("mcstgvel mcsvel startsyn")
 @pytest.mark.covers("imc.param.syntype")
 def test_a_velocity_is_reached_in_a_time_and_kept() -> None:
     card = ready_card()
@@ -315,6 +342,8 @@ def test_a_velocity_is_reached_in_a_time_and_kept() -> None:
     assert card.read("mcsvel", 1) == 0
 
 
+@pytest.mark.covers("imc.IMC_MovePV", "imc.concept.sync_laws")
+@shows("mcstgvel mcsvel startsyn")
 @pytest.mark.covers("imc.param.synsrc", "imc.param.synaxis", "imc.param.synsrcvar", "imc.param.enasyn")
 @pytest.mark.covers("imc.param.mcspos")
 def test_a_velocity_is_reached_within_a_distance_of_another_axis() -> None:
@@ -332,6 +361,8 @@ def test_a_velocity_is_reached_within_a_distance_of_another_axis() -> None:
     assert (card.read("mcsvel", 1), card.read("enasyn", 1), card.read("startsyn", 1)) == (40, 0, 0)
 
 
+@pytest.mark.covers("imc.IMC_MoveTP")
+@shows("moving slavedist startsyn syntype")
 def test_synchronous_motion_that_is_given_up_brakes() -> None:
     card = ready_card()
     set_now(card, ("syntype", FLAG, 1), ("slavedist", 5000, 1))
@@ -344,6 +375,7 @@ def test_synchronous_motion_that_is_given_up_brakes() -> None:
     assert 500 < card.read("curpos", 1) < 2500
 
 
+@pytest.mark.covers("imc.IMC_GearFree", "imc.concept.gear_law")
 @pytest.mark.covers("imc.param.curpos", "imc.param.curvel")
 def test_a_chain_of_gears_acts_within_the_cycle() -> None:
     card = ready_card()
@@ -359,6 +391,7 @@ def test_a_chain_of_gears_acts_within_the_cycle() -> None:
     assert [card.read("curpos", i) for i in range(3)] == [1000, 2000, -1000]
 
 
+@pytest.mark.covers("imc.IMC_MoveSuperimposed", "imc.concept.superposition")
 def test_a_superimposed_move_shifts_a_slave() -> None:
     card = ready_card()
     gear(card, 1.0)
@@ -394,6 +427,8 @@ STOPS: dict[str, Callable[[Card], None]] = {
 }
 
 
+@pytest.mark.covers("imc.IMC_MoveTV", "imc.IMC_MoveTP", "imc.IMC_GearInDist")
+@shows("curvel enasyn engear mcstgvel moving")
 @pytest.mark.parametrize("stop", ["velocity 0", "event"])
 @pytest.mark.parametrize("pending", ["tgvel", "gear", "gear left", "distance"])
 @pytest.mark.covers("imc.param.slavedist", "imc.param.synsrcvar", "imc.param.syntype")
@@ -418,6 +453,8 @@ def test_a_synchronous_motion_that_never_started_swallows_no_stop(pending: str, 
     assert (card.read("curvel", 1), card.read("moving", 1)) == (0, 0)
 
 
+@pytest.mark.covers("imc.IMC_MovePV", "imc.IMC_MovePP", "imc.IMC_GearInDist")
+@shows("curvel enasyn engear mcstgvel moving startsyn synsrcvar")
 @pytest.mark.parametrize("stop", STOPS)
 @pytest.mark.parametrize("running", ["tgvel", "gear", "distance"])
 @pytest.mark.covers("imc.param.slavedist", "imc.param.synaxis", "imc.param.synsrc", "imc.param.syntype")
@@ -439,6 +476,8 @@ def test_a_synchronous_motion_whose_source_stands_still_swallows_no_stop(running
     assert [card.read(name, 1) for name in ("startsyn", "enasyn", "engear")] == [0, 0, 0]
 
 
+@pytest.mark.covers("imc.IMC_MoveTV", "imc.concept.startsyn")
+@shows("curpos mcstgvel mcsvel moving startsyn")
 def test_the_goal_of_a_synchronous_motion_does_not_move_its_axis_before_the_start() -> None:
     card = ready_card()
     _tgvel_in(card, 250, 37)
@@ -457,6 +496,8 @@ def test_the_goal_of_a_synchronous_motion_does_not_move_its_axis_before_the_star
     assert card.read("moving", 1) == 0
 
 
+@pytest.mark.covers("imc.IMC_MoveTV")
+@shows("enasyn mcstgvel mcsvel startsyn synsrc synsrcvar")
 def test_the_goal_may_come_in_a_later_instruction_than_the_change_of_the_source() -> None:
     card = ready_card()
     for name, value in (("synsrc", address("ticks")), ("synsrcvar", 120), ("mcstgvel", 24), ("enasyn", FLAG)):
@@ -468,6 +509,8 @@ def test_the_goal_may_come_in_a_later_instruction_than_the_change_of_the_source(
     assert card.read("mcsvel", 1) == 6
 
 
+@pytest.mark.covers("imc.IMC_MoveTP", "imc.IMC_GearInTime")
+@shows("curpos enasyn engear startsyn")
 @pytest.mark.covers(
     "imc.param.clear",
     "imc.param.slaveabs",
@@ -500,6 +543,7 @@ def test_clear_and_leaving_the_gear_end_a_synchronous_motion_so_that_the_next_on
         assert (card.read("curpos", 1), card.read("startsyn", 1)) == (began + 333, 0)
 
 
+@shows("curpos moving")
 def test_a_gear_that_waits_for_its_start_is_left_without_touching_a_move() -> None:
     card = ready_card()
     move_absolute(card, 1234, 1)
@@ -522,6 +566,8 @@ def test_a_coupling_that_cannot_begin_shows_that_it_was_refused() -> None:
     assert (card.read("engear", 1), card.read("startsyn", 1)) == (0, 0)
 
 
+@pytest.mark.covers("imc.IMC_GearFree")
+@shows("curpos mcstgvel")
 @pytest.mark.covers(
     "imc.param.engear", "imc.param.gearratio", "imc.param.gearsrc", "imc.param.master", "imc.param.mcsvel"
 )
@@ -543,6 +589,8 @@ def test_a_gear_engaged_on_a_path_is_refused_and_behind_it_follows() -> None:
         assert (card.read("engear", 1), card.read("mcsvel", 1)) == ((FLAG, 6) if follows else (0, 0))
 
 
+@pytest.mark.covers("imc.IMC_GearFree")
+@shows("curpos engear mcstgvel moving startgroup")
 @pytest.mark.parametrize("mover", ["path", "contour"])
 @pytest.mark.covers("imc.param.group_x", "imc.param.groupnum", "imc.param.groupsmooth")
 def test_a_path_or_contour_takes_a_slave_out_of_its_gear(mover: str) -> None:
@@ -564,6 +612,7 @@ def test_a_path_or_contour_takes_a_slave_out_of_its_gear(mover: str) -> None:
     assert card.read("moving", 1) == 0
 
 
+@shows("curvel moving slavedist syntype")
 @pytest.mark.covers("imc.param.mcsdecel", "imc.param.startsyn")
 @pytest.mark.covers("imc.param.pcsmoving")
 def test_taking_startsyn_back_brakes_with_the_rate_of_the_axis() -> None:
@@ -581,6 +630,8 @@ def test_taking_startsyn_back_brakes_with_the_rate_of_the_axis() -> None:
     assert place + speed * speed / 4 - speed < card.read("curpos", 1) < place + speed * speed / 4 + speed
 
 
+@pytest.mark.covers("imc.IMC_GearFree")
+@shows("engear mcstgvel mcsvel")
 @pytest.mark.covers("imc.param.error", "imc.param.stopfilt")
 def test_a_slave_whose_move_cannot_be_leaves_the_gear_and_stops() -> None:
     card = ready_card()
@@ -594,6 +645,8 @@ def test_a_slave_whose_move_cannot_be_leaves_the_gear_and_stops() -> None:
     assert card.read("mcsvel", 0) == 10
 
 
+@pytest.mark.covers("imc.IMC_MovePP")
+@shows("cirpos enasyn mcsaccel mcspos mcstgvel slavedist startsyn synaxis syntype")
 @pytest.mark.covers("imc.param.synsrc", "imc.param.synsrcvar", "imc.param.ciraxis", "imc.concept.sync_laws")
 @pytest.mark.parametrize("source", ["curpos", "mcspos", "encp"])
 @pytest.mark.parametrize("speed", [7, -7])
@@ -612,6 +665,8 @@ def test_what_a_ring_axis_paces_does_not_notice_its_turns(source: str, speed: in
     assert (card.read("mcspos", 2), card.read("startsyn", 2)) == (1000, 0)
 
 
+@pytest.mark.covers("imc.IMC_GearFree")
+@shows("gearratio gearsrc master mcsaccel mcstgvel mcsvel")
 @pytest.mark.covers(
     "imc.param.engear", "imc.param.gearoutmod", "imc.param.gearoutvel", "imc.concept.gear_law"
 )

@@ -8,7 +8,7 @@ import pytest
 
 from polycnc.controllers.imc.card._card import Card
 from polycnc.controllers.imc.core._homing import home_sequence
-from support.imc_card import FLAG, IFIFO, ready_card, send, set_now
+from support.imc_card import FLAG, IFIFO, ready_card, send, set_now, shows
 
 AXIS = """
 [[axis]]
@@ -55,6 +55,8 @@ def turns(ways: list[float]) -> list[float]:
     return found
 
 
+@pytest.mark.covers("imc.IMC_HomeSwitch1")
+@shows("curpos moving")
 @pytest.mark.covers(
     "imc.concept.homing",
     "imc.param.gohome",
@@ -86,6 +88,8 @@ def _place(card: Card, position: int) -> None:
     card.wait()
 
 
+@pytest.mark.covers("imc.IMC_HomeSwitch2", "imc.IMC_HomeSwitch3")
+@shows("curpos")
 @pytest.mark.covers("imc.concept.homing")
 @pytest.mark.covers("imc.concept.same_edge", "imc.param.lowvel")
 @pytest.mark.parametrize(
@@ -108,6 +112,9 @@ def test_passes_come_back_to_the_same_place(start: int, negative: bool, rising: 
     assert max(late) <= 1
 
 
+@pytest.mark.covers(
+    "imc.IMC_HomeSwitchIndex1", "imc.IMC_HomeSwitchIndex2", "imc.IMC_HomeSwitchIndex3", "imc.concept.homing"
+)
 @pytest.mark.covers("imc.param.indexNum")
 @pytest.mark.parametrize(
     ("returns", "number", "pulse"),
@@ -121,6 +128,7 @@ def test_index_pulses_count_from_the_edge(returns: int, number: int, pulse: int)
     assert origin(card) == pulse
 
 
+@pytest.mark.covers("imc.IMC_HomeIndex")
 @pytest.mark.covers("imc.param.indexNum")
 @pytest.mark.parametrize(
     ("negative", "number", "pulse"), [(False, 1, 37), (False, 4, 3037), (True, 2, -1963)]
@@ -134,6 +142,8 @@ def test_index_pulses_alone_count_from_the_start(negative: bool, number: int, pu
     assert card.read("counter") == number
 
 
+@pytest.mark.covers("imc.concept.homing")
+@shows("curpos moving")
 @pytest.mark.covers("imc.param.homepos")
 @pytest.mark.covers("imc.const.stop")
 @pytest.mark.parametrize("returns", [0, 1, 2])
@@ -148,6 +158,8 @@ def test_it_can_go_to_a_place_in_the_end(returns: int) -> None:
     assert [card.read(name) for name in ("homed", "moving", "mcsgo", "poserr")] == [FLAG, 0, 0, 0]
 
 
+@pytest.mark.covers("imc.const.stop", "imc.concept.homing")
+@shows("curpos error")
 @pytest.mark.covers("imc.param.lowvel", "imc.param.highvel")
 @pytest.mark.parametrize("index", [0, 1])
 @pytest.mark.parametrize("returns", [0, 1, 2])
@@ -166,6 +178,8 @@ def test_the_closing_move_has_the_speed_of_the_last_stage_whatever_mcsmaxvel_is(
     assert max(abs(b - a) for a, b in pairwise(speeds)) <= 2  # mcsaccel, in whole pulses: it never stops dead
 
 
+@pytest.mark.covers("imc.IMC_HomeIndex", "imc.const.stop")
+@shows("curpos")
 @pytest.mark.covers("imc.param.highvel")
 @pytest.mark.parametrize("top", [0, 55])
 @pytest.mark.covers("imc.param.lowvel", "imc.param.mcsmaxvel")
@@ -177,6 +191,7 @@ def test_the_closing_move_after_index_pulses_alone_has_highvel(top: int) -> None
     assert (card.read("curpos"), max(abs(b - a) for a, b in pairwise(ways))) == (2222, 7)
 
 
+@pytest.mark.covers("imc.IMC_HomeSwitch1", "imc.concept.homing")
 def test_an_origin_switch_that_is_low_when_on_has_its_edges_the_other_way() -> None:
     card = ready_card(AXIS + 'low_when_on = ["origin"]\n')
     home(card, rising=True)
@@ -184,6 +199,7 @@ def test_an_origin_switch_that_is_low_when_on_has_its_edges_the_other_way() -> N
     assert origin(card) == 5600
 
 
+@pytest.mark.covers("imc.IMC_HomeSwitch1")
 @pytest.mark.covers("imc.param.homeseq", "imc.param.gohome")
 def test_the_known_value_of_homeseq_searches_the_switch_in_positive_direction() -> None:
     card = ready_card(AXIS)
@@ -192,6 +208,7 @@ def test_the_known_value_of_homeseq_searches_the_switch_in_positive_direction() 
     assert origin(card) == 5000
 
 
+@shows("moving")
 @pytest.mark.covers("imc.param.gohome")
 def test_a_search_can_be_given_up() -> None:
     card = ready_card(AXIS)
@@ -204,6 +221,7 @@ def test_a_search_can_be_given_up() -> None:
     assert 900 < card.read("curpos") < 1100
 
 
+@shows("moving")
 @pytest.mark.covers("imc.param.aioctr", "imc.param.error", "imc.param.gohome")
 def test_a_search_that_runs_into_a_limit_ends_without_an_origin() -> None:
     card = ready_card("[[axis]]\norigin = [5000.0, 5600.0]\nlimit_negative = -300.0\n")
@@ -224,6 +242,7 @@ def test_a_switch_that_is_passed_within_a_cycle_is_found() -> None:
     assert origin(card) == 5001
 
 
+@shows("curpos")
 @pytest.mark.covers("imc.param.poserr")
 def test_with_a_lagging_drive_the_origin_is_where_the_encoder_was_at_the_edge() -> None:
     card = ready_card("[[axis]]\norigin = [5000.0, 5600.0]\nlag_s = 0.005\ngain = 30.0\n")
@@ -235,6 +254,7 @@ def test_with_a_lagging_drive_the_origin_is_where_the_encoder_was_at_the_edge() 
     assert abs(card.read("poserr")) <= 1
 
 
+@shows("curpos run")
 @pytest.mark.parametrize("lacking", [("run", 0), ("highvel", 0)])
 @pytest.mark.covers("imc.param.gohome", "imc.param.highvel")
 def test_a_search_that_cannot_begin_takes_its_flag_back(lacking: tuple[str, float]) -> None:
@@ -247,6 +267,7 @@ def test_a_search_that_cannot_begin_takes_its_flag_back(lacking: tuple[str, floa
     assert (card.read("gohome"), card.read("curpos")) == (0, 0)
 
 
+@shows("gohome")
 @pytest.mark.covers("imc.param.highvel")
 def test_any_value_but_0_starts_a_search_and_shows_as_a_flag() -> None:
     card = ready_card(AXIS)

@@ -9,6 +9,7 @@ from collections.abc import Iterator
 import pytest
 
 from polycnc.controllers.imc import imclib as lib
+from support.imc_card import shows
 from support.imc_network import Program
 
 IF, Q, P1, P2, C = lib.FIFO_SEL
@@ -20,6 +21,7 @@ def program() -> Iterator[Program]:
     lib.detach()
 
 
+@shows("user16b0 user16b1 user16b2 user32b0 user32b1")
 @pytest.mark.covers("imc.IMC_SetParam16", "imc.IMC_SetParam32", "imc.IMC_SetParam48", "imc.type.IMC16")
 @pytest.mark.covers("imc.param.gearratio")
 def test_width_of_a_write_decides_which_words_change(program: Program) -> None:
@@ -66,6 +68,7 @@ def test_a_number_is_written_and_read_with_its_sign(program: Program, name: str,
     assert program.get(name, axis) == raw
 
 
+@shows("curpos")
 @pytest.mark.covers("imc.IMC_SetParam32", "imc.param.gohome", "imc.param.homepos")
 def test_two_flags_beside_each_other_are_both_set_by_a_wide_write(program: Program) -> None:
     program.set("homepos", 4321)
@@ -74,6 +77,7 @@ def test_two_flags_beside_each_other_are_both_set_by_a_wide_write(program: Progr
     assert program.get("curpos") == 4321
 
 
+@shows("user16b0 user16b1")
 @pytest.mark.covers(
     "imc.IMC_GetParam16", "imc.IMC_GetParam32", "imc.IMC_GetParam48", "imc.type.IMC32", "imc.type.__int64"
 )
@@ -111,6 +115,7 @@ def test_several_parameters_are_written_in_the_same_cycle(program: Program) -> N
     assert program.get("mcspos", 3) == 500
 
 
+@shows("error")
 @pytest.mark.covers("imc.struct.WR_MUL_DES", "imc.param.encp")
 @pytest.mark.covers("imc.IMC_GetMulParam")
 def test_several_parameters_are_read_at_one_moment(program: Program) -> None:
@@ -144,6 +149,7 @@ def test_bits_are_changed_in_the_card(program: Program) -> None:
     assert bits == [int(bit in (2, 3, 4, 15)) for bit in range(16)]
 
 
+@shows("user16b0 user16b1")
 @pytest.mark.covers("imc.IMC_WaitTime")
 def test_a_wait_holds_its_queue_and_no_other(program: Program) -> None:
     program.ok(lib.IMC_WaitTime, 50, Q)
@@ -210,6 +216,7 @@ WAITS = [  # function, what is waited for, what the word is before and what it b
 ]
 
 
+@shows("user16b1 user16b4")
 @pytest.mark.parametrize("timeout", [0, -1, 90])
 @pytest.mark.parametrize(("name", "arguments", "before", "met"), WAITS)
 def test_waits_for_a_parameter(
@@ -226,6 +233,7 @@ def test_waits_for_a_parameter(
     assert program.get("user16b1") == 23
 
 
+@shows("error user16b1 user16b4")
 @pytest.mark.parametrize(("name", "arguments", "before", "met"), WAITS)
 def test_waits_end_with_their_time_and_without_an_error(
     program: Program, name: str, arguments: tuple[int, ...], before: int, met: int
@@ -244,6 +252,7 @@ def test_waits_end_with_their_time_and_without_an_error(
     )
 
 
+@shows("error user16b0 user16b1")
 @pytest.mark.covers("imc.IMC_WaitParamMask")
 def test_a_mask_that_cannot_be_met_ends_with_its_time(program: Program) -> None:
     program.card.write("user16b0", 0x1234)
@@ -279,6 +288,7 @@ def follow(program: Program, *axes: int) -> list[tuple[int, ...]]:
     raise AssertionError("the path does not end")
 
 
+@shows("curpos user16b0")
 @pytest.mark.covers("imc.IMC_AddLineN", "imc.IMC_AddLineNWithVel", "imc.concept.segment_blocking")
 def test_lines_run_one_after_the_other_and_hold_what_comes_behind(program: Program) -> None:
     prepare(program, 1, 0)  # X is axis 1, Y is axis 0
@@ -365,6 +375,7 @@ def test_relative_segments_count_from_where_the_axes_are(program: Program) -> No
     assert max(y for _, y in track) == pytest.approx(340, abs=2)
 
 
+@shows("curpos")
 @pytest.mark.covers(
     "imc.concept.contour",
     "imc.concept.cfifo",
@@ -397,6 +408,7 @@ def test_contour_points_are_spread_over_their_cycles(program: Program) -> None:
     assert program.get("contouring", 0) == 0
 
 
+@shows("curpos events user16b0")
 @pytest.mark.covers("imc.event.CMD_CMP32i", "imc.event.CMD_SET16", "imc.concept.event_flags")
 @pytest.mark.covers("imc.IMC_InstallEvent")
 @pytest.mark.covers("imc.IMC_MoveVelocity")
@@ -433,6 +445,7 @@ def test_the_card_holds_128_events(program: Program) -> None:
     program.ok(lib.IMC_InstallEvent, [event], 1, IF)
 
 
+@shows("user16b0 user16b1")
 @pytest.mark.covers("imc.IMC_GetCapData")
 @pytest.mark.covers("imc.concept.rbfifo")
 @pytest.mark.covers("imc.IMC_WaitTime")
@@ -447,6 +460,7 @@ def test_reading_back_needs_no_queue(program: Program) -> None:
     assert lib.IMC_GetCapData(program.handle, 5, 0) == (lib.IMC_OK, [], 0, 0)
 
 
+@shows("encp")
 @pytest.mark.covers("imc.IMC_SetParamBit", "imc.bit.encpctr.10", "imc.concept.capfifo", "imc.param.encpctr")
 @pytest.mark.covers("imc.IMC_GetCapData")
 @pytest.mark.covers("imc.IMC_MoveVelocity")

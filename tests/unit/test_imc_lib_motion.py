@@ -9,6 +9,7 @@ import pytest
 from polycnc.controllers.imc import Card, parse_card
 from polycnc.controllers.imc import imclib as lib
 from polycnc.machine import Poll
+from support.imc_card import shows
 from support.imc_network import Program
 
 IF, Q, P1, P2, C = lib.FIFO_SEL
@@ -20,6 +21,7 @@ def program() -> Iterator[Program]:
     lib.detach()
 
 
+@shows("curpos")
 @pytest.mark.covers("imc.param.mcstgpos", "imc.param.mcsdist", "imc.param.mcsgo")
 @pytest.mark.covers("imc.IMC_MoveAbsolute")
 def test_absolute_move(program: Program) -> None:
@@ -32,6 +34,7 @@ def test_absolute_move(program: Program) -> None:
     assert (program.get("curpos", 1), program.get("curpos", 0)) == (-100, 0)
 
 
+@shows("curpos")
 @pytest.mark.covers("imc.IMC_MoveAbsolute", "imc.IMC_WaitParam", "imc.param.moving")
 @pytest.mark.covers("imc.IMC_MoveRelative")
 def test_relative_move_counts_from_where_the_axis_is_when_it_starts(program: Program) -> None:
@@ -44,6 +47,7 @@ def test_relative_move_counts_from_where_the_axis_is_when_it_starts(program: Pro
     assert program.get("curpos") == 750
 
 
+@shows("curpos")
 @pytest.mark.covers("imc.IMC_MoveRelative", "imc.IMC_MoveSuperimposed", "imc.IMC_Phasing")
 @pytest.mark.parametrize(
     ("move", "system"), [("IMC_MoveRelative", "mcs"), ("IMC_MoveSuperimposed", "pcs"), ("IMC_Phasing", "pcs")]
@@ -55,6 +59,7 @@ def test_a_relative_move_by_nothing_goes_nowhere(program: Program, move: str, sy
     assert program.get("curpos") == 0
 
 
+@shows("curpos mcsvel")
 @pytest.mark.covers(
     "imc.IMC_MoveVelocity",
     "imc.concept.mcs_pcs",
@@ -73,6 +78,7 @@ def test_superimposed_move_adds_to_what_the_axis_does(program: Program) -> None:
     assert (program.get("pcspos", 1), program.get("mcsvel", 1)) == (250, 10 * 65536)
 
 
+@shows("curpos curvel")
 @pytest.mark.covers("imc.concept.jog", "imc.concept.units", "imc.param.mcsvel")
 @pytest.mark.covers("imc.IMC_MoveVelocity")
 def test_velocity_is_kept_until_another_is_given(program: Program) -> None:
@@ -90,6 +96,7 @@ def test_velocity_is_kept_until_another_is_given(program: Program) -> None:
     assert program.get("curvel") == 0
 
 
+@shows("curpos")
 @pytest.mark.covers("imc.IMC_GearFree", "imc.param.pcsdist")
 @pytest.mark.covers("imc.IMC_Phasing", "imc.concept.superposition")
 @pytest.mark.parametrize(("source", "passed_on"), [(2, 0), (0, 100)])
@@ -204,6 +211,7 @@ HOMING_SPEEDS = {  # the speeds that an axis has on its ways, one after the othe
 }
 
 
+@shows("gohome homepos mcsaccel mcsdecel mcsvel")
 @pytest.mark.covers("imc.concept.homing", "imc.param.highvel", "imc.param.lowvel", "imc.const.direction")
 @pytest.mark.parametrize(
     ("name", "speeds"),
@@ -241,6 +249,7 @@ def test_homing_has_its_two_speeds(program: Program, name: str, speeds: list[int
         lib.detach()
 
 
+@shows("mcsvel")
 @pytest.mark.covers("imc.concept.gear_law", "imc.param.engear", "imc.param.gearoutmod", "imc.param.mcsaccel")
 @pytest.mark.covers("imc.IMC_GearFree")
 def test_free_gear_follows_with_the_ramp_of_the_slave(program: Program) -> None:
@@ -263,6 +272,7 @@ def test_free_gear_follows_with_the_ramp_of_the_slave(program: Program) -> None:
     assert (program.get("mcsvel", 0), program.get("mcsvel", 1)) == (0, -10 * 65536)  # gearoutmod 0
 
 
+@shows("curpos mcsvel")
 @pytest.mark.covers("imc.concept.startsyn", "imc.param.startsyn")
 @pytest.mark.covers("imc.IMC_GearInDist", "imc.concept.gear_dist_law")
 def test_gear_over_a_distance_waits_for_startsyn(program: Program) -> None:
@@ -283,6 +293,7 @@ def test_gear_over_a_distance_waits_for_startsyn(program: Program) -> None:
     assert program.get("curpos", 0) - program.get("curpos", 1) == pytest.approx(gap, abs=1)
 
 
+@shows("curpos mcsvel")
 @pytest.mark.covers("imc.concept.startsyn", "imc.param.startsyn")
 @pytest.mark.covers("imc.IMC_GearInTime", "imc.concept.gear_time_law")
 def test_gear_over_a_time_waits_for_startsyn(program: Program) -> None:
@@ -296,6 +307,7 @@ def test_gear_over_a_time_waits_for_startsyn(program: Program) -> None:
     assert program.get("curpos", 1) == pytest.approx(2000, abs=40)
 
 
+@shows("curpos")
 @pytest.mark.covers("imc.param.gearoutmod", "imc.param.engear")
 @pytest.mark.covers("imc.IMC_HandWheel")
 def test_handwheel(program: Program) -> None:
@@ -312,6 +324,7 @@ def test_handwheel(program: Program) -> None:
     assert program.get("curpos", 1) == 40
 
 
+@shows("curpos enasyn mcsvel")
 @pytest.mark.covers(
     "imc.concept.sync_laws", "imc.concept.startsyn", "imc.param.startsyn", "imc.param.slaveabs"
 )
@@ -342,6 +355,7 @@ def test_position_over_time(program: Program) -> None:
     assert program.get("curpos", 1) == 4300
 
 
+@shows("curpos mcsvel")
 @pytest.mark.covers("imc.concept.sync_laws", "imc.param.enasyn", "imc.param.startsyn")
 @pytest.mark.covers("imc.IMC_MovePP", "imc.concept.startsyn")
 def test_position_over_the_way_of_another_axis(program: Program) -> None:
@@ -363,6 +377,7 @@ def test_position_over_the_way_of_another_axis(program: Program) -> None:
     assert (program.get("curpos", 1), program.get("mcsvel", 1)) == (500, 0)
 
 
+@shows("curpos mcsvel startsyn")
 @pytest.mark.covers("imc.concept.sync_laws", "imc.concept.startsyn")
 @pytest.mark.covers("imc.IMC_MoveTV")
 def test_velocity_over_time(program: Program) -> None:
@@ -379,6 +394,7 @@ def test_velocity_over_time(program: Program) -> None:
     assert program.get("mcsvel", 1) == 100 * 65536
 
 
+@shows("curpos mcsvel startsyn")
 @pytest.mark.covers("imc.concept.startsyn", "imc.param.enasyn")
 @pytest.mark.covers("imc.IMC_MovePV", "imc.concept.sync_laws")
 def test_velocity_over_the_way_of_another_axis(program: Program) -> None:
@@ -396,6 +412,7 @@ def test_velocity_over_the_way_of_another_axis(program: Program) -> None:
     assert program.get("mcsvel", 1) == -20 * 65536
 
 
+@shows("curpos")
 @pytest.mark.covers("imc.IMC_MoveAbsolute")
 def test_a_poll_may_go_to_the_next_rest_of_an_axis() -> None:
     program = Program(clock=Poll(1000))

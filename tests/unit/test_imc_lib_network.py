@@ -21,6 +21,7 @@ def _leave_no_card() -> Iterator[None]:
     lib.detach()
 
 
+@pytest.mark.covers("imc.struct.NIC_INFO", "imc.status.IMC_OTHER_ERROR")
 @pytest.mark.covers("imc.IMC_FindNetCard")
 @pytest.mark.covers("imc.IMC_Close", "imc.IMC_Open")
 def test_find_lists_the_adapters_and_only_while_no_card_is_open() -> None:
@@ -44,6 +45,7 @@ def test_find_needs_a_place_for_its_answer() -> None:
     assert lib.IMC_FindNetCard(nowhere) == (lib.IMC_INVALID_PARAM, 0)
 
 
+@pytest.mark.covers("imc.status.IMC_DEVICE_NOT_FOUND")
 @pytest.mark.covers("imc.IMC_Open", "imc.type.IMC_HANDLE")
 def test_open_finds_a_card_by_adapter_and_id() -> None:
     here, there = ToldCard(axes=4), ToldCard(axes=8)
@@ -63,6 +65,7 @@ def test_open_finds_a_card_by_adapter_and_id() -> None:
         assert lib.IMC_Open(adapter, number) == (lib.IMC_OUT_OF_RANGE, None)
 
 
+@pytest.mark.covers("imc.status.IMC_TIME_OUT")
 @pytest.mark.covers("imc.IMC_OpenX", "imc.const.openMode", "imc.option.openMode")
 @pytest.mark.covers("imc.IMC_Open")
 def test_time_out_and_mode_of_openx() -> None:
@@ -84,6 +87,7 @@ def test_time_out_and_mode_of_openx() -> None:
     assert lib.IMC_OpenX(1, 0, 40, 0)[0] == lib.IMC_OK
 
 
+@pytest.mark.covers("imc.status.IMC_PASSWORD_ERROR")
 @pytest.mark.covers("imc.IMC_Open")
 @pytest.mark.covers("imc.IMC_OpenUsePassword", "imc.option.password")
 def test_password_of_4_to_99_characters() -> None:
@@ -97,11 +101,21 @@ def test_password_of_4_to_99_characters() -> None:
     assert lib.IMC_OpenUsePassword(0, 1, "12345678")[0] == lib.IMC_PASSWORD_ERROR  # none is stored
     assert lib.IMC_OpenUsePassword(0, 2, long)[0] == lib.IMC_OK
     assert lib.IMC_OpenUsePassword(0, 3, "abcd")[0] == lib.IMC_OK
+    others = (long[:98], long[:98] + "q", "q" + long[1:], "p" * 8)  # every character counts, and their number
+    for card, wrong in (
+        *((2, each) for each in others),
+        (3, "abcD"),
+        (3, "abcde"),
+        (0, "123456789"),
+        (0, "1234567"),
+    ):
+        assert lib.IMC_OpenUsePassword(0, card, wrong) == (lib.IMC_PASSWORD_ERROR, None)
     for wrong in ("", "abc", "p" * 100, "größer"):
         assert lib.IMC_OpenUsePassword(0, 0, wrong) == (lib.IMC_OUT_OF_RANGE, None)
     assert lib.IMC_OpenUsePassword(0, 9, "12345678")[0] == lib.IMC_DEVICE_NOT_FOUND
 
 
+@pytest.mark.covers("imc.status.IMC_VERSION_ERROR", "imc.param.fwversion")
 @pytest.mark.covers("imc.IMC_Open")
 def test_firmware_of_another_generation_is_not_opened() -> None:
     lib.attach(ToldCard(fwversion=410), ToldCard(fwversion=305))

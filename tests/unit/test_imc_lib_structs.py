@@ -105,6 +105,13 @@ def test_segments_have_80_and_88_bytes() -> None:
     assert imclib.PFIFOSegInfo.unpack(info.pack()).data.SegEndData[1] == -2000
 
 
+@pytest.mark.covers(
+    "imc.struct.NIC_INFO",
+    "imc.struct.WR_MUL_DES",
+    "imc.struct.EventInfo",
+    "imc.struct.PFIFOSegData",
+    "imc.struct.PFIFOSegInfo",
+)
 @pytest.mark.parametrize(
     "record",
     [
@@ -126,6 +133,12 @@ def test_any_memory_comes_back(record: type[Structure]) -> None:
         record.unpack(b"abc")
 
 
+@pytest.mark.covers(
+    "imc.struct.EventInfo.Src2.data16",
+    "imc.struct.EventInfo.Src2.data32",
+    "imc.struct.EventInfo.Src2.data48",
+    "imc.struct.EventInfo",
+)
 def test_events_fill_the_member_that_their_command_takes() -> None:
     of = imclib.EventInfo.of
     assert of(imclib.CMD_SET16, src2=-1, dest=(152, 0)).Src2.data16.data == -1

@@ -16,11 +16,13 @@ from support.imc_card import (
     ready_card,
     send,
     set_now,
+    shows,
 )
 
 LIMITS = "[[axis]]\nlimit_positive = 1000.0\nlimit_negative = -1000.0\n[[axis]]\n"
 
 
+@shows("curpos mcstgvel moving run")
 @pytest.mark.covers("imc.param.aiolat")
 @pytest.mark.covers(
     "imc.param.error", "imc.param.aioctr", "imc.param.stopfilt", "imc.param.aio", "imc.bit.aio.0"
@@ -46,6 +48,7 @@ def test_a_limit_switch_stops_the_motion_towards_it_only(way: int, bit: int, lev
     assert (card.read("error"), card.read("aiolat")) == (0, 0)
 
 
+@shows("curpos curvel gohome highvel mcsgo")
 @pytest.mark.covers("imc.param.aioctr")
 @pytest.mark.parametrize("way", [1, -1])
 @pytest.mark.covers("imc.param.homeseq", "imc.param.mcsdist", "imc.param.mcstgvel", "imc.param.mcstgpos")
@@ -80,6 +83,7 @@ def test_at_a_limit_switch_every_command_leads_away_from_it_only(way: int) -> No
     assert card.read("curpos") == there - 29 * way
 
 
+@shows("mcstgvel")
 @pytest.mark.covers("imc.param.aioctr")
 @pytest.mark.covers("imc.param.aiolat", "imc.param.clraiolat", "imc.param.aio", "imc.param.error")
 @pytest.mark.parametrize(
@@ -123,6 +127,7 @@ def test_a_latched_terminal_is_cleared_by_its_own_bit() -> None:
         assert card.read("aiolat") == left
 
 
+@shows("aioctr curpos error")
 @pytest.mark.covers("imc.param.psoftlim", "imc.param.nsoftlim")
 @pytest.mark.parametrize(("way", "bit"), [(1, 4), (-1, 8)])
 def test_software_limits_work_when_they_are_switched_on(way: int, bit: int) -> None:
@@ -135,6 +140,7 @@ def test_software_limits_work_when_they_are_switched_on(way: int, bit: int) -> N
         assert (abs(card.read("curpos")) < 1200) == (error != 0)
 
 
+@shows("aioctr curpos error")
 @pytest.mark.covers("imc.param.stopfilt")
 def test_an_error_that_no_mask_names_changes_nothing() -> None:
     card = ready_card(LIMITS)
@@ -144,6 +150,7 @@ def test_an_error_that_no_mask_names_changes_nothing() -> None:
     assert (card.read("curpos"), card.read("error")) == (3000, 1)
 
 
+@shows("aioctr curpos curvel error mcstgvel")
 @pytest.mark.covers("imc.param.stopfilt")
 @pytest.mark.covers("imc.param.stopmode")
 @pytest.mark.parametrize(("soft", "way", "bit"), [(0, 1, 1), (0, -1, 2), (1, 1, 4), (1, -1, 8)])
@@ -165,6 +172,7 @@ def test_stopmode_names_the_errors_that_stop_at_once_and_all_others_brake(
         assert (card.read("curvel", 1), card.read("curvel", 2)) == (0, 3)
 
 
+@shows("curvel mcsaccel mcsdecel mcstgvel")
 @pytest.mark.covers("imc.param.stopfilt", "imc.param.stopmode", "imc.param.exitfilt", "imc.param.error")
 @pytest.mark.covers("imc.param.emstop", "imc.param.run")
 def test_each_bit_of_the_masks_is_for_its_own_error() -> None:
@@ -198,6 +206,7 @@ def test_each_bit_of_the_masks_is_for_its_own_error() -> None:
             assert card.read("curvel", 1) * way == (4 if after == 9 else 0), (number, stop, mode, leave)
 
 
+@shows("curpos homepos mcsaccel mcstgvel sethome stopfilt")
 @pytest.mark.covers("imc.param.psoftlim", "imc.param.nsoftlim", "imc.param.aioctr", "imc.param.error")
 @pytest.mark.parametrize(("way", "name", "bit"), [(1, "psoftlim", 4), (-1, "nsoftlim", 8)])
 def test_a_software_limit_is_met_where_it_lies(way: int, name: str, bit: int) -> None:
@@ -211,6 +220,7 @@ def test_a_software_limit_is_met_where_it_lies(way: int, name: str, bit: int) ->
         assert (card.read("curpos"), card.read("error")) == (70_000 * way, error)
 
 
+@shows("aioctr curvel error mcstgvel moving run")
 @pytest.mark.covers("imc.param.exitfilt")
 def test_exitfilt_names_the_errors_that_end_run() -> None:
     card = ready_card(LIMITS)
@@ -226,6 +236,7 @@ def test_exitfilt_names_the_errors_that_end_run() -> None:
     assert other.read("run") == FLAG  # it is not an error that the mask names
 
 
+@shows("error")
 @pytest.mark.covers("imc.param.poserrlim")
 @pytest.mark.covers("imc.param.ena", "imc.param.poserr")
 def test_a_position_error_beyond_its_limit_is_an_error() -> None:
@@ -238,6 +249,7 @@ def test_a_position_error_beyond_its_limit_is_an_error() -> None:
     assert 100 < card.read("poserr") < 300
 
 
+@shows("curpos error moving")
 @pytest.mark.covers("imc.param.run")
 @pytest.mark.covers("imc.param.vellim", "imc.param.accellim")
 @pytest.mark.parametrize(("name", "value", "bit"), [("vellim", 30, 0x2000), ("accellim", 0.5, 0x4000)])
@@ -259,6 +271,7 @@ def test_speed_and_acceleration_limits_end_run_whatever_the_masks_say(
     assert here != 200
 
 
+@shows("curpos error moving run")
 @pytest.mark.covers("imc.param.emstop")
 @pytest.mark.covers("imc.param.ena")
 def test_an_emergency_stop_takes_everything_out_of_work_until_it_is_set_up_again() -> None:
@@ -287,6 +300,7 @@ def test_an_emergency_stop_takes_everything_out_of_work_until_it_is_set_up_again
     assert [card.read("error", i) for i in range(4)] == [0] * 4
 
 
+@shows("error moving run")
 @pytest.mark.covers("imc.param.emstop")
 def test_other_bits_of_emstop_are_errors_of_every_axis() -> None:
     card = ready_card()
@@ -296,6 +310,7 @@ def test_other_bits_of_emstop_are_errors_of_every_axis() -> None:
     assert (card.read("moving", 2), card.read("run", 2)) == (0, FLAG)
 
 
+@shows("aioctr error moving")
 def test_a_limit_under_a_path_stops_the_path_along_itself() -> None:
     card = ready_card(LIMITS)
     set_now(card, ("aioctr", 0x000F))
@@ -308,6 +323,7 @@ def test_a_limit_under_a_path_stops_the_path_along_itself() -> None:
     assert (card.read("startpath1"), card.read("moving"), card.read("error")) == (0, 0, 1)
 
 
+@shows("curvel engear mcstgvel run")
 @pytest.mark.covers("imc.param.gearsrc")
 def test_run_set_to_0_stops_at_once_and_a_gear_is_left() -> None:
     card = ready_card()
@@ -318,6 +334,7 @@ def test_run_set_to_0_stops_at_once_and_a_gear_is_left() -> None:
     assert (card.read("curvel", 1), card.read("engear", 1), card.read("curvel", 0)) == (0, 0, 10)
 
 
+@shows("aio")
 @pytest.mark.covers("imc.param.gearsrc")
 def test_a_card_that_is_switched_on_at_its_switches_shows_them() -> None:
     card = ready_card(
@@ -329,6 +346,7 @@ def test_a_card_that_is_switched_on_at_its_switches_shows_them() -> None:
     assert [card.read("aio", i) for i in range(3)] == [7, 1 + 4, 2 + 4]
 
 
+@shows("curvel error mcstgvel")
 @pytest.mark.covers("imc.param.aioctr", "imc.param.aio", "imc.param.aiolat")
 @pytest.mark.parametrize(
     ("control", "idle"),
@@ -347,6 +365,10 @@ def test_a_terminal_without_a_switch_is_never_active(control: int, idle: int) ->
     assert (card.read("error"), card.read("curvel"), card.read("aiolat")) == (0, 5, 0)
 
 
+@shows(
+    "curvel enasyn error group_x groupnum mcsaccel mcstgvel run slavedist startgroup startsyn "
+    "synsrc synsrcvar syntype"
+)
 @pytest.mark.covers("imc.param.mcsslope", "imc.param.pcsslope")
 def test_slope_is_clear_at_rest_however_the_motion_has_ended() -> None:
     card = ready_card()

@@ -20,7 +20,7 @@ from polycnc.controllers.imc.core._parameters import (
     parameter,
 )
 from polycnc.errors import ConfigurationError, UsageError
-from support.imc_card import FLAG, IFIFO, ready_card, send, set_now, setting
+from support.imc_card import FLAG, IFIFO, ready_card, send, set_now, setting, shows
 
 # What belongs to the card and not to an axis: contour, cells, waits, events, stops, queues, inputs, outputs, versions.
 CARD_ADDRESSES = {
@@ -75,6 +75,8 @@ def test_a_write_touches_only_the_words_it_is_wide() -> None:
     assert card.read_words(12, 0, 2) == (0x64, 0)
 
 
+@pytest.mark.covers("imc.concept.word_memory", "imc.IMC_SetParam32")
+@shows("curpos")
 @pytest.mark.covers("imc.param.homepos")
 def test_a_write_that_is_too_wide_also_writes_the_neighbour() -> None:
     card = ready_card()
@@ -85,6 +87,7 @@ def test_a_write_that_is_too_wide_also_writes_the_neighbour() -> None:
     assert card.read("curpos") == 77
 
 
+@pytest.mark.covers("imc.concept.word_memory", "imc.IMC_GetParam32")
 def test_a_read_that_is_too_wide_shows_the_neighbour() -> None:
     card = Card()
     card.state.memory[0, 152] = -1
@@ -93,6 +96,7 @@ def test_a_read_that_is_too_wide_shows_the_neighbour() -> None:
     assert card.read_raw(152, 0, 2) == -65536
 
 
+@shows("gearratio mcstgpos stopfilt ticks user16b0")
 @pytest.mark.covers(
     *(f"imc.type.{kind}" for kind in ("S32", "U32", "S16", "U16", "F16", "R16", "S16.32", "S16.16", "U16.16"))
 )
@@ -131,6 +135,7 @@ def test_a_type_has_its_width_and_range(name: str, low: float, high: float) -> N
     assert each.to_raw(high) == raw // (2 if low < 0 else 1) - 1 or each.type in ("F16", "R16")
 
 
+@shows("gearoutvel gearratio")
 @pytest.mark.covers("imc.type.S16.32", "imc.type.S16.16")
 def test_ratios_have_exact_words() -> None:
     card = Card()
@@ -147,6 +152,7 @@ def test_ratios_have_exact_words() -> None:
     assert card.read_raw(address("gearoutvel"), 0, 2) == 100 * 65536
 
 
+@shows("homepos")
 @pytest.mark.covers(*(row for row, _, at, _ in _printed() if at in CARD_ADDRESSES))
 def test_words_of_the_card_are_the_same_for_every_axis() -> None:
     card = Card()
@@ -180,6 +186,7 @@ def test_read_only_words_refuse_to_be_written() -> None:
     assert card.read("naxis") == 3
 
 
+@shows("profiling")
 @pytest.mark.covers("imc.param.fwversion", "imc.param.naxis")
 def test_a_write_past_a_read_only_word_leaves_that_word_alone() -> None:
     card = ready_card()
@@ -188,6 +195,8 @@ def test_a_write_past_a_read_only_word_leaves_that_word_alone() -> None:
     assert (card.read("cirswap"), card.read("profiling")) == (3, 0)
 
 
+@pytest.mark.covers("imc.IMC_SetParamBit", "imc.IMC_TurnParamBit", "imc.IMC_ORXORParam")
+@shows("user16b0")
 @pytest.mark.parametrize(
     ("old", "ors", "xors", "new"),
     [(0x00F0, 0x000F, 0x00F0, 0x000F), (0b110, 0b10, 0b10, 0b100), (0, 1 << 15, 0, 0x8000), (5, 0, 1, 4)],
@@ -204,6 +213,8 @@ def test_bits_are_set_cleared_and_turned_when_the_instruction_leaves_the_queue(
     assert card.read_words(address("user16b0"), 0, 1) == (new,)
 
 
+@pytest.mark.covers("imc.IMC_SetMulParam")
+@shows("mcsdist mcsgo")
 def test_several_writes_of_one_instruction_act_in_the_same_cycle() -> None:
     card = ready_card()
     writes = tuple(
@@ -217,6 +228,7 @@ def test_several_writes_of_one_instruction_act_in_the_same_cycle() -> None:
     assert card.read("mcsvel") > 0
 
 
+@shows("clear emstop error events hpause ticks user16b0")
 @pytest.mark.covers("imc.param.mcsdist")
 def test_clear_of_one_axis_clears_what_the_card_counts() -> None:
     card = ready_card()

@@ -6,11 +6,12 @@ import math
 
 import pytest
 
-from polycnc.controllers.imc.core._instructions import Write, WriteMany
+from polycnc.controllers.imc.core._instructions import Segment, Write, WriteMany
 from polycnc.controllers.imc.core._parameters import address
 from support.imc_card import (
     FLAG,
     IFIFO,
+    PFIFO1,
     QFIFO,
     move_absolute,
     move_relative,
@@ -18,10 +19,13 @@ from support.imc_card import (
     send,
     set_now,
     setting,
+    shows,
     trace,
 )
 
 
+@pytest.mark.covers("imc.IMC_MoveAbsolute", "imc.concept.ptp_modes")
+@shows("curpos curvel encp mcsvel moving")
 @pytest.mark.covers("imc.param.motion")
 @pytest.mark.covers(
     "imc.param.mcsgo", "imc.param.mcstgpos", "imc.param.mcsmoving", "imc.param.mcspos", "imc.concept.units"
@@ -39,6 +43,8 @@ def test_an_absolute_move_ends_on_its_target_in_the_time_of_its_ramps() -> None:
     assert [card.read(n, 1) for n in ("mcsgo", "mcsmoving", "moving", "mcsvel", "curvel")] == [0] * 5
 
 
+@pytest.mark.covers("imc.IMC_MoveAbsolute")
+@shows("mcspos mcstgpos moving")
 def test_writing_the_target_alone_starts_nothing() -> None:
     card = ready_card()
     send(card, IFIFO, ("mcstgpos", 100))
@@ -46,6 +52,8 @@ def test_writing_the_target_alone_starts_nothing() -> None:
     assert (card.read("mcstgpos"), card.read("mcspos"), card.read("moving")) == (100, 0, 0)
 
 
+@pytest.mark.covers("imc.IMC_MoveAbsolute")
+@shows("mcsvel")
 @pytest.mark.covers("imc.param.mcsmaxvel", "imc.param.mcsaccel", "imc.param.mcsdecel", "imc.param.mcsslope")
 def test_a_long_move_has_its_speed_and_its_two_rates() -> None:
     card = ready_card()
@@ -58,6 +66,10 @@ def test_a_long_move_has_its_speed_and_its_two_rates() -> None:
     assert sum(velocities) == 1000
 
 
+@pytest.mark.covers(
+    "imc.IMC_MoveRelative", "imc.IMC_MoveSuperimposed", "imc.IMC_Phasing", "imc.concept.mcs_pcs"
+)
+@shows("run")
 @pytest.mark.parametrize("system", ["mcs", "pcs"])
 @pytest.mark.covers(
     *(f"imc.param.{system}{name}" for system in ("mcs", "pcs") for name in ("maxvel", "accel", "decel", "go", "dist")),
@@ -79,6 +91,7 @@ def test_each_system_moves_backwards_with_its_own_speed_and_rates(system: str) -
     assert [card.read(f"{system}{name}", 2) for name in ("go", "vel", "moving")] == [0, 0, 0]
 
 
+@shows("mcstgvel mcsvel")
 @pytest.mark.covers("imc.param.mcsslope")
 def test_slope_is_set_while_the_velocity_changes() -> None:
     card = ready_card()
@@ -87,6 +100,8 @@ def test_slope_is_set_while_the_velocity_changes() -> None:
     assert card.read("mcsvel") == 3
 
 
+@pytest.mark.covers("imc.IMC_MoveRelative", "imc.concept.ptp_modes")
+@shows("mcspos mcstgpos")
 @pytest.mark.covers("imc.param.mcsdist")
 def test_a_relative_move_counts_from_where_the_axis_is_when_it_begins() -> None:
     card = ready_card()
@@ -101,6 +116,8 @@ def test_a_relative_move_counts_from_where_the_axis_is_when_it_begins() -> None:
     assert card.read("mcspos") == here - 200
 
 
+@pytest.mark.covers("imc.IMC_MoveAbsolute")
+@shows("curpos")
 def test_a_move_can_be_given_a_new_target_under_way() -> None:
     card = ready_card()
     move_absolute(card, 5000)
@@ -110,6 +127,7 @@ def test_a_move_can_be_given_a_new_target_under_way() -> None:
     assert card.read("curpos") == -300
 
 
+@shows("moving")
 @pytest.mark.covers("imc.param.mcsgo")
 def test_a_move_is_stopped_by_writing_0_to_go() -> None:
     card = ready_card()
@@ -122,6 +140,7 @@ def test_a_move_is_stopped_by_writing_0_to_go() -> None:
     assert card.read("moving") == 0
 
 
+@shows("curpos mcspos mcsvel moving")
 @pytest.mark.covers("imc.param.smooth")
 def test_an_abrupt_stop_zeroes_the_velocity() -> None:
     card = ready_card()
@@ -133,6 +152,7 @@ def test_an_abrupt_stop_zeroes_the_velocity() -> None:
     assert (card.read("mcspos"), card.read("curpos"), card.read("moving")) == (position, position, 0)
 
 
+@shows("curpos mcsgo mcstgpos moving")
 @pytest.mark.covers("imc.param.mcstrack", "imc.concept.ptp_modes")
 def test_a_tracking_move_follows_its_target() -> None:
     card = ready_card()
@@ -148,6 +168,8 @@ def test_a_tracking_move_follows_its_target() -> None:
     assert card.read("curpos") == -100
 
 
+@pytest.mark.covers("imc.IMC_MoveVelocity", "imc.concept.units")
+@shows("mcspos moving")
 @pytest.mark.covers("imc.concept.jog", "imc.param.mcstgvel", "imc.param.mcsvel")
 def test_continuous_motion_ramps_to_its_velocity_and_back_to_rest() -> None:
     card = ready_card()
@@ -161,6 +183,8 @@ def test_continuous_motion_ramps_to_its_velocity_and_back_to_rest() -> None:
     assert card.read("mcspos") == sum(range(100)) + 100 * 51 + sum(range(100))
 
 
+@pytest.mark.covers("imc.IMC_MoveVelocity", "imc.concept.jog")
+@shows("mcstgvel mcsvel")
 @pytest.mark.covers("imc.param.mcsdecel")
 def test_continuous_motion_turns_through_standstill() -> None:
     card = ready_card()
@@ -170,16 +194,24 @@ def test_continuous_motion_turns_through_standstill() -> None:
     assert trace(card, "mcsvel", 5) == [0.5, 0, -1, -2, -2]
 
 
+@pytest.mark.covers("imc.IMC_MoveVelocity")
+@shows(
+    "curpos curvel enasyn encp error homepos mcspos mcstgvel outsettle outtrack poserr "
+    "poserrlim settlewin slavedist startsyn synsrc synsrcvar syntype trackwin"
+)
 @pytest.mark.covers("imc.concept.position_overflow")
+@pytest.mark.parametrize("way", [1, -1])
 @pytest.mark.parametrize(("overflow", "after"), [("origin", 50.0), ("wrap", -(2.0**31) + 50)])
 @pytest.mark.covers("imc.param.mcsaccel", "imc.param.sethome")
-def test_a_position_that_leaves_32_bits_does_not_disturb_the_motion(overflow: str, after: float) -> None:
+def test_a_position_that_leaves_32_bits_does_not_disturb_the_motion(
+    overflow: str, after: float, way: int
+) -> None:
     card = ready_card(f'overflow = "{overflow}"\n[[axis]]\nlag_s = 0.005\ngain = 50.0\n[[axis]]\n')
-    set_now(card, ("homepos", 2**31 - 150), ("sethome", FLAG))
+    set_now(card, ("homepos", (2**31 - 150) * way), ("sethome", FLAG))
     card.advance(1)
     set_now(
         card,
-        ("mcstgvel", 100),
+        ("mcstgvel", 100 * way),
         ("mcsaccel", 100),
         ("poserrlim", 2000),
         ("trackwin", 2000),
@@ -194,17 +226,18 @@ def test_a_position_that_leaves_32_bits_does_not_disturb_the_motion(overflow: st
     set_now(card, *pace, ("enasyn", FLAG, 1), ("startsyn", FLAG, 1))
     card.advance(2)
     names = ("curpos", "mcspos", "curvel", "error")
-    assert [card.read(name) for name in names] == [after, after, 100, 0]
+    assert [card.read(name) for name in names] == [after * way, after * way, 100 * way, 0]
     assert card.read("mcspos", 1) == 45  # half of the way of 400
     places = []
     for _ in range(40):
         card.advance(1)
         places.append((card.read("poserr"), card.read("curpos") - card.read("encp")))
         assert (card.read("outtrack"), card.read("outsettle"), card.read("error")) == (0, 0, 0)
-    assert all(shown == way % 2**32 for shown, way in places)
+    assert all((shown - between) % 2**32 == 0 for shown, between in places)
     assert (card.read("mcspos", 1), card.read("startsyn", 1)) == (90, 0)
 
 
+@shows("curpos error homepos mcsgo")
 @pytest.mark.covers("imc.param.sethome")
 def test_a_relative_move_beyond_32_bits_is_refused_with_an_error_bit() -> None:
     card = ready_card()
@@ -215,6 +248,8 @@ def test_a_relative_move_beyond_32_bits_is_refused_with_an_error_bit() -> None:
     assert (card.read("curpos"), card.read("error"), card.read("mcsgo")) == (2**31 - 100, 0x200, 0)
 
 
+@pytest.mark.covers("imc.IMC_MoveSuperimposed")
+@shows("curpos curvel mcspos mcstgpos mcsvel")
 @pytest.mark.covers(
     "imc.concept.superposition",
     "imc.concept.mcs_pcs",
@@ -237,6 +272,8 @@ def test_a_superimposed_move_adds_to_whatever_the_axis_does() -> None:
     assert card.read("pcstgpos") == 500
 
 
+@pytest.mark.covers("imc.IMC_MoveSuperimposed")
+@shows("mcstgpos")
 @pytest.mark.covers("imc.param.shiftmaster")
 def test_shiftmaster_decides_whether_the_target_takes_part_in_a_superimposed_move() -> None:
     for shift, target in ((0, 600), (FLAG, 100)):
@@ -247,6 +284,8 @@ def test_shiftmaster_decides_whether_the_target_takes_part_in_a_superimposed_mov
         assert card.read("mcstgpos") == target
 
 
+@pytest.mark.covers("imc.concept.mcs_pcs")
+@shows("curpos curvel mcspos mcsvel")
 @pytest.mark.covers(
     "imc.param.pcstgvel",
     "imc.param.pcsvel",
@@ -274,6 +313,7 @@ def test_the_auxiliary_system_has_the_motions_of_the_main_one() -> None:
     assert (card.read("pcspos"), card.read("curpos"), card.read("mcspos")) == (10, 10, 0)
 
 
+@shows("mcsaccel mcsdecel moving")
 @pytest.mark.covers("imc.param.smooth", "imc.param.smoothing", "imc.param.curvel", "imc.param.curpos")
 @pytest.mark.parametrize("span", [2, 17, 64])
 def test_smoothing_is_the_mean_of_the_last_increments_and_loses_nothing(span: int) -> None:
@@ -290,6 +330,7 @@ def test_smoothing_is_the_mean_of_the_last_increments_and_loses_nothing(span: in
     assert (smooth.read("curpos"), smooth.read("moving"), smooth.read("smoothing")) == (1234, 0, 0)
 
 
+@shows("curpos")
 @pytest.mark.covers("imc.param.smooth")
 @pytest.mark.covers("imc.param.profiling", "imc.param.smoothing", "imc.param.moving", "imc.param.mcsmoving")
 def test_moving_lasts_as_long_as_smoothing_does() -> None:
@@ -302,6 +343,7 @@ def test_moving_lasts_as_long_as_smoothing_does() -> None:
     assert (card.read("moving"), card.read("curpos")) == (0, 400)
 
 
+@shows("curpos curvel mcstgvel moving")
 @pytest.mark.covers("imc.param.hpause")
 @pytest.mark.covers("imc.param.pcstgvel")
 def test_pause_brakes_every_axis_and_lets_it_go_on() -> None:
@@ -322,6 +364,7 @@ def test_pause_brakes_every_axis_and_lets_it_go_on() -> None:
     assert [card.read("curvel", i) for i in (1, 2, 3)] == [20, 6, -17]
 
 
+@shows("curvel mcstgvel")
 def test_haltstep_pauses_one_axis_at_once_or_with_its_deceleration() -> None:
     for mode, after in ((0, 0.0), (FLAG, 19.0)):
         card = ready_card()
@@ -335,6 +378,7 @@ def test_haltstep_pauses_one_axis_at_once_or_with_its_deceleration() -> None:
         assert card.read("curvel") == 20
 
 
+@shows("curpos encp mcsgo")
 @pytest.mark.covers("imc.param.run", "imc.param.ena")
 @pytest.mark.covers("imc.param.poserr")
 def test_an_axis_out_of_run_plans_nothing_and_one_without_ena_moves_nothing() -> None:
@@ -349,6 +393,32 @@ def test_an_axis_out_of_run_plans_nothing_and_one_without_ena_moves_nothing() ->
     assert (card.read("encp", 2), card.read("poserr", 2)) == (0, 100)
 
 
+@shows("run ena hpause startgroup contouring groupnum groupsmooth group_x")
+@pytest.mark.covers("imc.param.pfifoenable", "imc.param.segabs", "imc.type.F16")
+@pytest.mark.parametrize("flag", [FLAG, 1, 0x2000])
+def test_any_number_but_0_sets_the_flags_of_an_axis_and_of_the_card(flag: int) -> None:
+    card = ready_card()
+    set_now(card, ("run", 0, 1), ("ena", 0, 1))
+    card.advance(1)
+    set_now(card, ("run", flag, 1), ("ena", flag, 1), ("mcstgvel", -3, 1))
+    card.advance(8)
+    set_now(card, ("hpause", flag))
+    card.advance(9)
+    here = [card.read("curpos", 1), card.kernel.servo.actual[1], card.read("curvel", 1)]
+    assert here == [-24, -24, 0]  # 1 + 2 + 6 * 3, and 2 + 1 to rest
+    set_now(card, ("hpause", 0), ("mcstgvel", 0, 1))
+    set_now(card, ("groupnum", 1), ("group_x", 1), ("groupsmooth", 4), ("startgroup", flag))
+    assert card.push_points([-20])
+    card.advance(2)
+    assert (card.read("curpos", 1), card.read("contouring", 1)) == (-34, FLAG)
+    card.advance(8)
+    set_now(card, ("startgroup", 0), ("segmap_x1", 1), ("pathabs", flag, 1), ("startpath1", flag))
+    assert card.push(PFIFO1, Segment((-61,)))
+    card.wait()
+    assert card.kernel.servo.actual[1] == -61
+
+
+@shows("curpos encp mcsmaxvel moving")
 @pytest.mark.covers(
     "imc.param.motion",
     "imc.param.settlewin",
@@ -383,6 +453,7 @@ def test_motion_ends_when_the_error_has_stayed_in_its_window(way: int, window: i
     assert sum(each["motion"] != 0 for each in seen) > moved + length
 
 
+@shows("mcsgo")
 @pytest.mark.covers("imc.param.settlen", "imc.param.motion", "imc.param.outtrack")
 @pytest.mark.covers("imc.param.profiling", "imc.param.moving")
 def test_motion_of_an_ideal_axis_lasts_settlen_cycles_longer() -> None:
@@ -410,6 +481,7 @@ def test_status_tells_whether_the_breakpoint_is_passed() -> None:
     assert (seen[0][1], seen[-1][1]) == (False, True)
 
 
+@shows("curpos encp mcspos poserr")
 @pytest.mark.covers("imc.param.sethome", "imc.param.homepos")
 @pytest.mark.covers("imc.param.pcspos")
 def test_sethome_makes_the_present_position_the_origin() -> None:
@@ -426,6 +498,7 @@ def test_sethome_makes_the_present_position_the_origin() -> None:
     assert card.kernel.servo.actual[0] == 725
 
 
+@pytest.mark.covers("imc.IMC_SetMulParam")
 @pytest.mark.covers("imc.param.mcsdist")
 def test_moves_of_several_axes_in_one_instruction_start_together() -> None:
     card = ready_card()
@@ -435,6 +508,7 @@ def test_moves_of_several_axes_in_one_instruction_start_together() -> None:
     assert len({card.read("mcspos", i) for i in range(4)}) == 1
 
 
+@shows("curpos encp error mcspos mcstgpos")
 @pytest.mark.covers("imc.param.clear")
 @pytest.mark.covers("imc.param.aiolat", "imc.param.encs", "imc.param.pcspos", "imc.param.pcstgpos")
 def test_clear_puts_an_axis_at_zero_without_errors() -> None:
@@ -452,6 +526,7 @@ def test_clear_puts_an_axis_at_zero_without_errors() -> None:
     assert [card.read(n) for n in (*names, "clear")] == [0] * 10
 
 
+@shows("curpos encp mcspos")
 @pytest.mark.covers("imc.param.ciraxis", "imc.param.cirpos")
 def test_a_ring_axis_counts_its_turns() -> None:
     card = ready_card()
@@ -465,6 +540,7 @@ def test_a_ring_axis_counts_its_turns() -> None:
     assert card.kernel.servo.actual[0] == 2900
 
 
+@shows("curpos")
 @pytest.mark.covers("imc.param.cirpos", "imc.param.ciraxis")
 def test_a_two_way_ring_goes_below_zero() -> None:
     card = ready_card()
@@ -474,6 +550,7 @@ def test_a_two_way_ring_goes_below_zero() -> None:
     assert (card.read("curpos"), card.read("cirswap")) == (-300, -1)
 
 
+@shows("curpos mcsaccel mcstgvel")
 @pytest.mark.covers("imc.param.encp", "imc.param.encpvel", "imc.param.encpfactor")
 def test_the_main_encoder_is_scaled_and_shows_its_speed() -> None:
     card = ready_card("[[axis]]\ncounts_per_pulse = 4.0\n")
@@ -489,6 +566,7 @@ def test_the_main_encoder_is_scaled_and_shows_its_speed() -> None:
         assert (card.read("encp"), card.read("encpvel")) == (140 + 25 * k // 2, 12.5)
 
 
+@shows("encp")
 @pytest.mark.covers("imc.param.ena", "imc.param.encpctr")
 @pytest.mark.covers("imc.param.poserr")
 def test_feedback_can_follow_the_command() -> None:
@@ -499,6 +577,7 @@ def test_feedback_can_follow_the_command() -> None:
     assert (card.read("encp"), card.read("poserr"), card.kernel.servo.actual[0]) == (100, 0, 0)
 
 
+@shows("mcsgo mcstgvel")
 @pytest.mark.covers("imc.param.profiling", "imc.param.moving", "imc.param.mcsmoving", "imc.param.pcsmoving")
 @pytest.mark.covers("imc.param.motion")
 @pytest.mark.parametrize("name", ["mcsgo", "pcsgo", "mcstgvel", "pcstgvel"])
@@ -513,6 +592,7 @@ def test_an_axis_that_has_just_been_told_to_move_shows_it_before_the_next_cycle(
     assert [card.read(word, 2) for word in shown] == [0] * 5
 
 
+@shows("curpos encp homepos mcspos poserr")
 @pytest.mark.covers("imc.param.encpfactor", "imc.param.sethome")
 @pytest.mark.covers("imc.param.encpvel")
 def test_the_origin_is_set_in_the_scale_of_the_encoder() -> None:
@@ -529,6 +609,7 @@ def test_the_origin_is_set_in_the_scale_of_the_encoder() -> None:
     assert [card.read(name, 2) for name in ("curpos", "encp")] == [65, 25 + 60]
 
 
+@pytest.mark.covers("imc.IMC_MoveVelocity", "imc.IMC_MoveRelative")
 @pytest.mark.parametrize("system", ["mcs", "pcs"])
 def test_of_a_move_and_a_velocity_in_one_cycle_the_last_counts(system: str) -> None:
     go = (setting(f"{system}dist", 7000, 1), setting(f"{system}go", FLAG, 1))

@@ -21,6 +21,7 @@ from support.imc_card import (
     send,
     set_now,
     setting,
+    shows,
     trace,
 )
 
@@ -158,6 +159,12 @@ def expected_owner(owner: int, command: int) -> int:
     )  # it brakes, or runs on
 
 
+@pytest.mark.covers("imc.concept.startsyn", "imc.IMC_GearFree", "imc.IMC_GearInTime", "imc.IMC_MoveTP")
+@shows(
+    "enasyn engear error gearratio gearsrc gohome group_x groupnum groupsmooth highvel "
+    "homeseq master mcsdecel mcsgo mcstgpos mcstgvel mcsvel segmap_x1 slaveabs slavedist "
+    "startgroup startsyn synaxis synsrc synsrcvar syntype"
+)
 @pytest.mark.parametrize("command", COMMANDS)
 @pytest.mark.parametrize("owner", OWNERS)
 def test_a_command_does_to_the_owner_of_an_axis_what_the_table_says(owner: int, command: int) -> None:
@@ -174,6 +181,11 @@ def test_a_command_does_to_the_owner_of_an_axis_what_the_table_says(owner: int, 
     assert max(abs(b - a) for a, b in pairwise(speeds)) <= 1.01  # nothing stops dead
 
 
+@shows(
+    "curvel enasyn engear gearratio gearsrc gohome group_x groupnum groupsmooth highvel "
+    "homeseq master mcsdecel mcsgo mcstgpos mcstgvel segmap_x1 slaveabs slavedist startgroup "
+    "startsyn synaxis synsrc synsrcvar syntype"
+)
 @pytest.mark.parametrize("command", sorted(set(COMMANDS) - OF_COUPLINGS))
 @pytest.mark.parametrize("owner", OWNERS)
 @pytest.mark.covers("imc.IMC_GearInTime")
@@ -194,6 +206,10 @@ def test_a_gear_that_waits_outlives_every_motion_of_its_slave(owner: int, comman
     assert flags(card) == {"engear"}
 
 
+@shows(
+    "enasyn engear gearratio gearsrc gohome group_x groupnum groupsmooth master mcsdecel "
+    "mcsgo mcstgvel segmap_x1 startgroup startsyn synaxis synsrc synsrcvar syntype"
+)
 @pytest.mark.parametrize("owner", [own.ON_PATH, own.ON_CONTOUR])
 def test_startsyn_on_a_path_is_refused_and_the_gear_waits_on(owner: int) -> None:
     card = owned(owner)
@@ -202,6 +218,11 @@ def test_startsyn_on_a_path_is_refused_and_the_gear_waits_on(owner: int) -> None
     assert (own.owner_of(card.state, SLAVE), flags(card)) == (owner, WAITING)
 
 
+@pytest.mark.covers("imc.IMC_GearInTime")
+@shows(
+    "curvel enasyn engear gearratio gearsrc master mcsdecel mcstgvel slaveabs slavedist "
+    "startsyn synaxis synsrc synsrcvar syntype"
+)
 @pytest.mark.parametrize("owner", [own.SYNCHRONOUS, own.ENGAGING, own.ENGAGED])
 def test_a_gear_that_waits_changes_nothing_of_the_coupling_that_runs(owner: int) -> None:
     plain, armed = owned(owner), owned(owner)
@@ -211,6 +232,11 @@ def test_a_gear_that_waits_changes_nothing_of_the_coupling_that_runs(owner: int)
     assert trace(armed, "curvel", 50, SLAVE) == before
 
 
+@pytest.mark.covers("imc.IMC_GearInTime", "imc.concept.startsyn")
+@shows(
+    "curvel enasyn engear gearratio gearsrc gohome master mcsdecel mcsgo mcstgvel slaveabs "
+    "slavedist startsyn synaxis synsrc synsrcvar syntype"
+)
 @pytest.mark.parametrize("owner", [own.SYNCHRONOUS, own.ENGAGING])
 def test_a_gear_that_waits_starts_when_startsyn_is_set_again_while_another_coupling_runs(owner: int) -> None:
     card = owned(owner)
@@ -221,6 +247,8 @@ def test_a_gear_that_waits_starts_when_startsyn_is_set_again_while_another_coupl
     assert flags(card) == {"engear"}
 
 
+@pytest.mark.covers("imc.IMC_MoveTP")
+@shows("curpos enasyn engear gohome mcsgo slavedist startsyn synsrc synsrcvar syntype")
 def test_a_gear_that_waits_is_kept_when_the_coupling_before_it_is_complete() -> None:
     card = owned(own.SYNCHRONOUS)
     arm(card)
@@ -228,6 +256,10 @@ def test_a_gear_that_waits_is_kept_when_the_coupling_before_it_is_complete() -> 
     assert (card.read("curpos", SLAVE), flags(card)) == (3210, WAITING)
 
 
+@shows(
+    "emstop enasyn engear gearratio gearsrc gohome master mcsdecel mcsgo mcstgvel run "
+    "startsyn synaxis synsrc synsrcvar syntype"
+)
 @pytest.mark.parametrize("ended", ["run", "clear", "stop"])
 @pytest.mark.covers("imc.param.clear")
 def test_what_ends_a_gear_that_waits_shows_in_its_flags_and_startsyn_does_not_stay(ended: str) -> None:
@@ -243,6 +275,7 @@ def test_what_ends_a_gear_that_waits_shows_in_its_flags_and_startsyn_does_not_st
     assert flags(card) == set()
 
 
+@shows("curpos enasyn engear gohome mcsgo startsyn")
 @pytest.mark.covers("imc.IMC_GearInDist")
 def test_startsyn_after_a_refused_gear_reads_0_and_moves_nothing() -> None:
     card = ready_card()
@@ -256,6 +289,8 @@ def test_startsyn_after_a_refused_gear_reads_0_and_moves_nothing() -> None:
     assert (flags(card), card.read("curpos", SLAVE)) == (set(), 0)
 
 
+@pytest.mark.covers("imc.concept.startsyn", "imc.IMC_GearInTime")
+@shows("curpos enasyn engear gohome mcsgo startsyn synsrcvar")
 def test_a_startsyn_from_before_a_gear_does_not_start_it() -> None:
     card = ready_card()
     master(card)
@@ -267,6 +302,7 @@ def test_a_startsyn_from_before_a_gear_does_not_start_it() -> None:
     assert (flags(card), card.read("curpos", SLAVE)) == (WAITING, 0)
 
 
+@shows("enasyn engear gohome mcsgo startsyn")
 def test_enasyn_taken_back_ends_the_wait() -> None:
     card = ready_card()
     arm(card)
@@ -274,6 +310,7 @@ def test_enasyn_taken_back_ends_the_wait() -> None:
     assert flags(card) == set()
 
 
+@shows("curvel error mcsaccel mcsdecel mcsgo mcsmaxvel mcstgpos mcstgvel stopfilt")
 @pytest.mark.parametrize("register", ["mcsmaxvel", "mcsaccel", "mcsdecel"])
 def test_a_move_without_speed_or_rate_is_a_bad_instruction_and_the_axis_brakes(register: str) -> None:
     card = owned(own.RUNS)

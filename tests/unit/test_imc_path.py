@@ -18,6 +18,7 @@ from support.imc_card import (
     ready_card,
     send,
     set_now,
+    shows,
     trace,
     wait_for,
 )
@@ -27,6 +28,8 @@ def _positions(card, count: int) -> list[float]:  # type: ignore[no-untyped-def]
     return [card.read("curpos", i) for i in range(count)]
 
 
+@pytest.mark.covers("imc.IMC_AddLineNWithVel", "imc.param.pfifoenable")
+@shows("curpos")
 @pytest.mark.covers(
     "imc.concept.pfifo_setup", "imc.param.segmap_x1", "imc.param.segmap_x2", "imc.param.segtgvel1"
 )
@@ -48,6 +51,8 @@ def test_coordinates_are_the_axes_they_are_mapped_to(space: int) -> None:
     )
 
 
+@pytest.mark.covers("imc.IMC_AddLineNWithVel", "imc.concept.pfifo_setup")
+@shows("segmap_x1 segmap_x2")
 @pytest.mark.covers("imc.param.pathacc1", "imc.param.pathacc2", "imc.param.segtgvel2", "imc.param.segtgvel1")
 @pytest.mark.parametrize("space", [1, 2])
 def test_a_segment_has_its_speed_and_the_acceleration_of_its_space(space: int) -> None:
@@ -64,6 +69,8 @@ def test_a_segment_has_its_speed_and_the_acceleration_of_its_space(space: int) -
     assert card.clock.cycles == 250 + 40 + 1
 
 
+@pytest.mark.covers("imc.IMC_AddLineN", "imc.IMC_AddLineNWithVel", "imc.concept.pfifo_setup")
+@shows("curpos")
 @pytest.mark.covers("imc.param.segtgvel1")
 @pytest.mark.covers("imc.param.pathaxisnum1")
 def test_a_plain_segment_takes_the_speeds_in_force_and_needs_no_axis_count() -> None:
@@ -79,6 +86,8 @@ def test_a_plain_segment_takes_the_speeds_in_force_and_needs_no_axis_count() -> 
     assert set(speeds[200:350]) == set(speeds[450:600]) == {4.0}
 
 
+@pytest.mark.covers("imc.IMC_AddLineNWithVel", "imc.struct.PFIFOSegInfo")
+@shows("curvel")
 def test_segments_with_an_end_speed_join_within_a_cycle() -> None:
     card = ready_card()
     enable_path(card, 0, 1)
@@ -91,6 +100,8 @@ def test_segments_with_an_end_speed_join_within_a_cycle() -> None:
     assert card.read("segID1") == 4
 
 
+@pytest.mark.covers("imc.IMC_AddLineNWithVel", "imc.concept.pfifo1")
+@shows("curpos curvel user16b0")
 def test_a_write_between_joined_segments_does_not_stop_them() -> None:
     card = ready_card()
     enable_path(card, 0)
@@ -103,6 +114,8 @@ def test_a_write_between_joined_segments_does_not_stop_them() -> None:
     assert (card.read("user16b0"), card.read("curpos")) == (1, 600)
 
 
+@pytest.mark.covers("imc.IMC_WaitParam", "imc.concept.pfifo1")
+@shows("curpos user32b0")
 @pytest.mark.covers("imc.concept.segment_blocking")
 def test_a_wait_between_segments_holds_the_path_until_it_is_met() -> None:
     card = ready_card()
@@ -118,6 +131,8 @@ def test_a_wait_between_segments_holds_the_path_until_it_is_met() -> None:
     assert card.read("curpos") == 400
 
 
+@pytest.mark.covers("imc.IMC_AddArc", "imc.IMC_AddArcWithVel", "imc.const.arc_dir")
+@shows("curpos moving segmap_x1")
 @pytest.mark.covers("imc.const.dir_conflict")
 @pytest.mark.parametrize(("clockwise", "middle"), [(False, (-10, 45)), (True, (-109, -25))])
 def test_an_arc_goes_round_its_centre_in_its_direction(clockwise: bool, middle: tuple[int, int]) -> None:
@@ -139,6 +154,8 @@ def test_an_arc_goes_round_its_centre_in_its_direction(clockwise: bool, middle: 
     assert card.read("seglen1") == round(math.pi / 2 * radius * (3 if clockwise else 1))
 
 
+@pytest.mark.covers("imc.IMC_AddArc", "imc.IMC_AddArcWithVel")
+@shows("curpos")
 def test_an_arc_that_ends_where_it_begins_is_a_full_circle() -> None:
     card = ready_card()
     enable_path(card, 0, 1)
@@ -150,6 +167,10 @@ def test_an_arc_that_ends_where_it_begins_is_a_full_circle() -> None:
     assert _positions(card, 2) == [0, 0]
 
 
+@pytest.mark.covers(
+    "imc.IMC_AddArcLine", "imc.IMC_AddArcLineWithVel", "imc.IMC_AddSpiral", "imc.IMC_AddSpiralWithVel"
+)
+@shows("curpos segmap_x1")
 def test_an_arc_line_takes_the_other_coordinates_along_straight() -> None:
     card = ready_card()
     enable_path(card, 2, 3, 0, 1)
@@ -163,6 +184,8 @@ def test_an_arc_line_takes_the_other_coordinates_along_straight() -> None:
     assert _positions(card, 4) == [40, -80, 100, 100]
 
 
+@pytest.mark.covers("imc.IMC_AddLineN", "imc.IMC_AddArc", "imc.concept.pfifo_setup")
+@shows("curpos mcsgo mcstgpos")
 @pytest.mark.covers("imc.param.segabs")
 def test_data_are_positions_or_distances_by_axis() -> None:
     card = ready_card()
@@ -180,6 +203,8 @@ def test_data_are_positions_or_distances_by_axis() -> None:
     assert _positions(card, 2) == [250, 450]
 
 
+@pytest.mark.covers("imc.concept.pfifo_setup", "imc.IMC_AddLineNWithVel")
+@shows("curpos")
 @pytest.mark.covers("imc.param.feedoverride")
 def test_the_override_acts_at_once_and_0_pauses() -> None:
     card = ready_card()
@@ -200,6 +225,8 @@ def test_the_override_acts_at_once_and_0_pauses() -> None:
     assert card.read("curpos") == 5000
 
 
+@pytest.mark.covers("imc.IMC_AddLineNWithVel")
+@shows("curpos curvel")
 def test_the_speed_counts_on_x_y_z_or_on_one_coordinate() -> None:
     card = ready_card()
     enable_path(card, 0, 1, 2, 3)
@@ -216,6 +243,8 @@ def test_the_speed_counts_on_x_y_z_or_on_one_coordinate() -> None:
     assert _positions(card, 4) == [200, 400, 400, 1800]
 
 
+@pytest.mark.covers("imc.param.pfifoenable")
+@shows("curpos moving")
 def test_switching_the_space_off_stops_by_force() -> None:
     card = ready_card()
     enable_path(card, 0)
@@ -232,6 +261,10 @@ def test_switching_the_space_off_stops_by_force() -> None:
     assert card.read("curpos") == 6000
 
 
+@pytest.mark.covers(
+    "imc.concept.pfifo1", "imc.concept.pfifo2", "imc.param.pfifoenable", "imc.concept.fifo_independence"
+)
+@shows("curpos segmap_x2")
 def test_two_spaces_run_side_by_side() -> None:
     card = ready_card()
     enable_path(card, 0, 1)
@@ -244,6 +277,8 @@ def test_two_spaces_run_side_by_side() -> None:
     assert _positions(card, 4) == [600, 800, 300, -400]
 
 
+@pytest.mark.covers("imc.concept.pfifo_setup")
+@shows("curpos error user16b0")
 def test_an_axis_that_cannot_take_part_makes_the_segment_an_error() -> None:
     card = ready_card()
     set_now(card, ("run", 0, 1), ("stopfilt", 0))
@@ -255,6 +290,8 @@ def test_an_axis_that_cannot_take_part_makes_the_segment_an_error() -> None:
     assert (card.read("error", 0), card.read("user16b0")) == (0x1000, 1)
 
 
+@pytest.mark.covers("imc.concept.segment_blocking")
+@shows("curpos")
 def test_a_move_behind_a_segment_in_the_same_queue_is_carried_out() -> None:
     card = ready_card()
     enable_path(card, 0)
@@ -266,6 +303,7 @@ def test_a_move_behind_a_segment_in_the_same_queue_is_carried_out() -> None:
     assert (card.read("curpos"), card.read("segID1")) == (60, 2)
 
 
+@shows("curpos")
 @pytest.mark.covers("imc.param.hpause")
 def test_pause_of_all_axes_holds_a_path() -> None:
     card = ready_card()
@@ -282,6 +320,8 @@ def test_pause_of_all_axes_holds_a_path() -> None:
     assert card.read("curpos") == 1000
 
 
+@pytest.mark.covers("imc.IMC_AddLineN")
+@shows("curpos")
 def test_a_segment_of_no_length_is_passed() -> None:
     card = ready_card()
     enable_path(card, 0, 1)
@@ -291,6 +331,7 @@ def test_a_segment_of_no_length_is_passed() -> None:
     assert (card.read("curpos"), card.read("segID1")) == (100, 2)
 
 
+@shows("curpos")
 @pytest.mark.covers("imc.param.smooth")
 def test_smoothing_acts_behind_the_path() -> None:
     card = ready_card()
@@ -302,6 +343,7 @@ def test_smoothing_acts_behind_the_path() -> None:
     assert card.read("curpos") == 1000
 
 
+@shows("curpos moving")
 @pytest.mark.parametrize("smooth", [0, 7])
 @pytest.mark.covers("imc.param.mcsmoving", "imc.param.segmap_x1", "imc.param.smooth")
 def test_an_axis_that_leaves_the_mapping_between_joined_segments_arrives(smooth: int) -> None:
@@ -318,6 +360,7 @@ def test_an_axis_that_leaves_the_mapping_between_joined_segments_arrives(smooth:
     assert [card.read(name, 0) for name in ("moveinpath1", "moving", "mcsmoving")] == [0, 0, 0]
 
 
+@shows("curpos mcsgo mcstgpos")
 @pytest.mark.covers("imc.param.segmap_x1")
 def test_an_axis_that_has_left_the_mapping_takes_a_command_behind_the_joint() -> None:
     card = ready_card()
@@ -330,6 +373,7 @@ def test_an_axis_that_has_left_the_mapping_takes_a_command_behind_the_joint() ->
     assert _positions(card, 3) == [950, 622, 901]
 
 
+@shows("curpos error segmap_x1 segmap_x2 stopfilt")
 @pytest.mark.parametrize(("first", "second"), [(1, 2), (2, 1)])
 def test_an_axis_cannot_be_in_both_spaces_at_once(first: int, second: int) -> None:
     card = ready_card()
@@ -345,6 +389,7 @@ def test_an_axis_cannot_be_in_both_spaces_at_once(first: int, second: int) -> No
     assert _positions(card, 4) == [0, 700, 0, 310]
 
 
+@shows("curpos error segmap_x1 segmap_x2")
 @pytest.mark.covers("imc.param.pathaxisnum1", "imc.param.pathaxisnum2", "imc.concept.pfifo_setup")
 @pytest.mark.parametrize("space", [1, 2])
 def test_no_segment_may_have_more_axes_than_the_space(space: int) -> None:
@@ -359,6 +404,8 @@ def test_no_segment_may_have_more_axes_than_the_space(space: int) -> None:
     assert [card.read("error", i) for i in range(4)] == [0x1000, 0x1000, 0x1000, 0]
 
 
+@pytest.mark.covers("imc.IMC_AddContourData")
+@shows("curpos pathacc1 pathacc2 segmap_x1 segmap_x2 segtgvel1 segtgvel2")
 @pytest.mark.covers("imc.param.pathaxisnum1", "imc.param.pathaxisnum2")
 @pytest.mark.parametrize("space", [1, 2])
 def test_points_in_a_path_queue_are_gone_along_with_the_speed_of_the_space(space: int) -> None:
@@ -380,6 +427,8 @@ def test_points_in_a_path_queue_are_gone_along_with_the_speed_of_the_space(space
     assert (card.waiting_words(queue), card.read(f"segID{space}")) == (0, 10)
 
 
+@pytest.mark.covers("imc.IMC_AddContourData")
+@shows("curpos")
 @pytest.mark.covers("imc.param.pathacc1", "imc.param.feedoverride")
 @pytest.mark.covers("imc.param.pathaxisnum1", "imc.param.segtgvel1")
 def test_points_slow_down_for_what_follows_and_take_the_override() -> None:
@@ -400,6 +449,8 @@ def test_points_slow_down_for_what_follows_and_take_the_override() -> None:
     assert card.read("curpos") == 1300
 
 
+@pytest.mark.covers("imc.IMC_AddContourData")
+@shows("error segmap_x1 user16b0")
 @pytest.mark.parametrize(("named", "points"), [(0, (3, 4)), (2, (3, 4, 5))])
 @pytest.mark.covers("imc.param.pathaxisnum1", "imc.param.segtgvel1")
 def test_points_that_are_not_whole_are_an_error(named: int, points: tuple[int, ...]) -> None:

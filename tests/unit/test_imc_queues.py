@@ -32,6 +32,7 @@ from support.imc_card import (
     send,
     set_now,
     setting,
+    shows,
     wait_for,
 )
 
@@ -74,6 +75,8 @@ def test_a_wait_for_ever_in_one_queue_leaves_the_others_alone() -> None:
     assert _cells(card) == [0, 1, 1]
 
 
+@pytest.mark.covers("imc.IMC_WaitTime")
+@shows("user16b0")
 @pytest.mark.parametrize("release", ["qwaittime", "clrqfifo", "clearimc"])
 @pytest.mark.covers("imc.param.clrqfifo")
 def test_a_wait_is_released_by_its_time_register_or_by_clearing(release: str) -> None:
@@ -87,6 +90,7 @@ def test_a_wait_is_released_by_its_time_register_or_by_clearing(release: str) ->
     assert card.waiting_words(QFIFO) == 0
 
 
+@pytest.mark.covers("imc.IMC_ClearFIFO", "imc.IMC_WaitTime")
 @pytest.mark.parametrize(
     ("queue", "shown"), [(QFIFO, "qwaittime"), (PFIFO1, "pwaittime1"), (PFIFO2, "pwaittime2")]
 )
@@ -102,6 +106,8 @@ def test_a_queue_that_is_emptied_waits_no_longer(queue: Fifo, shown: str) -> Non
     assert card.read(shown) == 0
 
 
+@pytest.mark.covers("imc.IMC_WaitTime", "imc.concept.qfifo", "imc.concept.pfifo1", "imc.concept.pfifo2")
+@shows("user16b0")
 @pytest.mark.parametrize("queue", [QFIFO, PFIFO1, PFIFO2])
 def test_a_wait_of_time_lasts_its_milliseconds(queue: Fifo) -> None:
     card = ready_card()
@@ -115,6 +121,8 @@ def test_a_wait_of_time_lasts_its_milliseconds(queue: Fifo) -> None:
     assert _cells(card)[0] == 1
 
 
+@pytest.mark.covers("imc.IMC_WaitParam")
+@shows("error user16b0")
 def test_a_wait_that_is_never_met_goes_on_after_its_time() -> None:
     card = ready_card()
     wait_for(card, QFIFO, "user16b1", 5, timeout=50)
@@ -127,6 +135,8 @@ def test_a_wait_that_is_never_met_goes_on_after_its_time() -> None:
     assert (_cells(card)[0], card.read("error"), card.read("qwaittime")) == (1, 0, 0)
 
 
+@pytest.mark.covers("imc.IMC_WaitParamMask")
+@shows("user16b0 user16b1")
 @pytest.mark.parametrize(
     ("mask", "data", "met"), [(0x00FF, 0x0034, True), (0x00FF, 0x1234, False), (0xFFFF, 0x1234, True)]
 )
@@ -139,6 +149,8 @@ def test_a_masked_wait_compares_with_data_as_given(mask: int, data: int, met: bo
     assert _cells(card)[0] == int(met)
 
 
+@pytest.mark.covers("imc.IMC_WaitParam", "imc.concept.qfifo", "imc.concept.pfifo1")
+@shows("curpos user16b0")
 def test_a_wait_for_the_end_of_a_move_behind_that_move_is_not_met_too_early() -> None:
     for queue in (QFIFO, PFIFO1):
         card = ready_card()
@@ -152,6 +164,7 @@ def test_a_wait_for_the_end_of_a_move_behind_that_move_is_not_met_too_early() ->
         assert (_cells(card)[0], card.read("curpos", 1)) == (1, 1000)
 
 
+@shows("user16b0")
 @pytest.mark.covers("imc.concept.pfifo1", "imc.concept.pfifo2", "imc.param.pfifoenable")
 @pytest.mark.parametrize("space", [1, 2])
 def test_a_path_queue_is_off_until_it_is_enabled(space: int) -> None:
@@ -170,6 +183,8 @@ def test_a_path_queue_is_off_until_it_is_enabled(space: int) -> None:
     assert (_cells(card)[:3], card.waiting_words(queue)) == ([1, 5, 10], 0)
 
 
+@pytest.mark.covers("imc.status.IMC_FIFO_FULL", "imc.concept.ififo", "imc.concept.qfifo")
+@shows("user16b0 user16b1")
 def test_a_full_queue_takes_nothing_and_drains_with_time() -> None:
     card = ready_card("[depths]\nififo = 64\nqfifo = 64\n")
     for queue in (IFIFO, QFIFO):
@@ -204,6 +219,7 @@ def test_count_registers_show_the_words_that_wait_and_clear_when_written() -> No
     assert [card.waiting_words(queue) for queue in range(5)] == [0] * 5
 
 
+@shows("user16b0")
 @pytest.mark.covers("imc.param.clrqfifo")
 def test_a_queue_can_clear_itself() -> None:
     card = ready_card()
@@ -215,6 +231,7 @@ def test_a_queue_can_clear_itself() -> None:
     assert _cells(card)[0] == 2
 
 
+@pytest.mark.covers("imc.concept.instruction_fifos")
 def test_queues_refuse_what_is_not_for_them() -> None:
     card = ready_card()
     event = Event(EventCommand.CMD_SET16, EventType.IMC_Allways, target=address("user16b0"))
@@ -239,6 +256,7 @@ def test_queues_refuse_what_is_not_for_them() -> None:
     assert [card.waiting_words(queue) for queue in range(5)] == [0] * 5
 
 
+@shows("user16b0 user32b0")
 def test_long_traffic_goes_round_the_ring() -> None:
     card = ready_card("[depths]\nqfifo = 64\n")
     for value in range(400):
@@ -284,6 +302,8 @@ def test_general_outputs_follow_their_registers() -> None:
             card.output(number)
 
 
+@pytest.mark.covers("imc.concept.segment_blocking", "imc.concept.fifo_independence")
+@shows("curpos user16b0 user16b1 user16b2")
 def test_a_segment_holds_its_own_queue_only() -> None:
     card = ready_card()
     enable_path(card, 0, 1)
@@ -316,6 +336,7 @@ def test_what_never_fits_into_a_queue_is_refused_and_not_put_off() -> None:
         card.push(PFIFO1, Points(()))
 
 
+@shows("user16b0 user16b1")
 @pytest.mark.covers("imc.concept.instruction_fifos")
 @pytest.mark.parametrize(("queue", "cycles"), [(IFIFO, 1), (QFIFO, 3), (PFIFO1, 1), (PFIFO2, 1)])
 def test_every_queue_takes_the_same_instructions_and_carries_them_out_in_order(
@@ -335,6 +356,8 @@ def test_every_queue_takes_the_same_instructions_and_carries_them_out_in_order(
     assert card.waiting_words(queue) == 0
 
 
+@pytest.mark.covers("imc.IMC_ClearFIFO")
+@shows("clrqfifo user16b0 user16b1 user16b2")
 @pytest.mark.parametrize("before", [0, 1, 3])
 @pytest.mark.parametrize("times", [1, 2])
 @pytest.mark.parametrize(
@@ -363,6 +386,7 @@ def test_emptying_at_once_spares_what_is_sent_after_it(
     assert card.waiting_words(fifo) == 0
 
 
+@shows("mcspos")
 def test_lines_sent_right_after_an_emptying_are_gone_along() -> None:
     card = ready_card()
     enable_path(card, 0)

@@ -7,6 +7,7 @@ from collections.abc import Callable, Iterator
 import pytest
 
 from polycnc.controllers.imc import imclib as lib
+from support.imc_card import shows
 from support.imc_network import Program
 
 IF, Q, P1, P2, C = lib.FIFO_SEL
@@ -27,6 +28,7 @@ def follow(program: Program) -> None:
     assert program.get("curvel", 1) == 10 * ONE
 
 
+@shows("curvel enasyn engear gearratio gearsrc master mcstgvel syntype")
 @pytest.mark.parametrize("velocity", [0, -5 * ONE])
 @pytest.mark.covers("imc.IMC_MoveVelocity")
 def test_a_velocity_beside_the_end_of_the_gear_counts(program: Program, velocity: int) -> None:
@@ -56,6 +58,10 @@ def end_synchronous_motion(program: Program) -> None:
     program.set("startsyn", 0, 1)
 
 
+@shows(
+    "curpos curvel enasyn engear gearratio gearsrc gohome highvel homeseq master mcsdist "
+    "mcsgo mcstgpos mcstgvel slaveabs slavedist startsyn synaxis synsrc synsrcvar syntype"
+)
 @pytest.mark.parametrize("end", [end_gear, end_homing, end_synchronous_motion])
 @pytest.mark.covers("imc.IMC_MoveAbsolute")
 def test_a_move_beside_the_end_of_another_motion_is_not_lost(
@@ -68,6 +74,7 @@ def test_a_move_beside_the_end_of_another_motion_is_not_lost(
     assert (program.get("curpos", 1), program.get("mcsgo", 1)) == (-300, 0)
 
 
+@shows("curvel enasyn engear gearratio gearsrc master mcsdist mcsgo mcstgpos mcstgvel syntype")
 @pytest.mark.parametrize("before", [lib.IMC_MoveVelocity, lib.IMC_MoveAbsolute, lib.IMC_MoveRelative])
 @pytest.mark.covers("imc.IMC_GearFree")
 @pytest.mark.covers("imc.IMC_MoveRelative")
@@ -83,6 +90,7 @@ def test_a_gear_behind_a_move_of_the_same_cycle_counts(
     assert (program.get("mcsgo", 1), program.get("mcsdist", 1)) == (0, 0)
 
 
+@shows("curvel gohome highvel homeseq mcstgvel")
 @pytest.mark.covers("imc.IMC_HomeSwitch1")
 def test_homing_behind_a_velocity_of_the_same_cycle_counts(program: Program) -> None:
     program.set("highvel", 4 * ONE, 1)
@@ -92,6 +100,10 @@ def test_homing_behind_a_velocity_of_the_same_cycle_counts(program: Program) -> 
     assert (program.get("curvel", 1), program.get("gohome", 1)) == (4 * ONE, -1)
 
 
+@shows(
+    "curpos enasyn mcsdist mcsgo mcstgpos mcstgvel slaveabs slavedist startsyn synaxis synsrc "
+    "synsrcvar syntype"
+)
 @pytest.mark.parametrize("before", [lib.IMC_MoveVelocity, lib.IMC_MoveAbsolute])
 @pytest.mark.covers("imc.IMC_MoveTP")
 def test_the_start_of_a_synchronous_motion_behind_a_move_of_the_same_cycle_counts(
@@ -105,6 +117,7 @@ def test_the_start_of_a_synchronous_motion_behind_a_move_of_the_same_cycle_count
     assert program.get("curpos", 2) == 500
 
 
+@shows("curvel enasyn engear gearratio gearsrc master mcstgvel synaxis synsrc synsrcvar syntype")
 @pytest.mark.covers("imc.IMC_GearInTime")
 def test_a_velocity_stays_until_a_gear_that_waits_for_its_start(program: Program) -> None:
     program.ok(lib.IMC_MoveVelocity, 3 * ONE, 1, IF)

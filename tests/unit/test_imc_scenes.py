@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable
+from functools import partial
 from itertools import cycle
 from pathlib import Path
 
@@ -17,6 +18,7 @@ from polycnc.conformance import State, load_conformance
 from polycnc.controllers.imc import imclib as lib
 from polycnc.controllers.imc.core._parameters import PARAMETERS, address
 from support.imc_bench import Bench
+from support.imc_walk import CARD_FILE, OTHERWISE, walk
 
 RECORDED = Path(__file__).parents[1] / "golden" / "imc"
 IF, Q, P1, P2, C = lib.FIFO_SEL
@@ -457,10 +459,152 @@ def limits(b: Bench) -> None:
     b.step(5)
 
 
+EDGES = """
+number_of_axes = 6
+[[axis]]
+[[axis]]
+[[axis]]
+origin = [40, 60]
+index = { first = 43, pitch = 9 }
+[[axis]]
+lag_s = 0.003
+gain = 80.0
+"""
+
+
+def far(b: Bench) -> None:
+    """Leave 32 bits with what it paces, be refused a target out there, and be a slave that is."""
+    b.set(IF, 0, homepos=(1 << 31) - 120, sethome=-1)
+    b.set(IF, 3, homepos=-(1 << 31) + 90, sethome=-1)
+    b.step(1)
+    b.MoveInDist(200, 0, 77, 1, IF)
+    b.set(IF, 1, enasyn=-1, startsyn=-1)
+    b.MoveVelocity(12 * ONE + 345, 0, IF)
+    b.MoveVelocity(-9 * ONE - 77, 3, IF)
+    b.step(30)
+    b.GearFree(-0.75, 0, 2, 2, IF)
+    b.set(IF, 4, homepos=-(1 << 31) + 50, sethome=-1)
+    b.step(9)
+    b.MoveRelative(-(1 << 31) + 40, 2, IF)
+    b.MoveRelative(-90, 4, IF)
+    b.MoveSuperimposed((1 << 31) - 1, 4, IF)
+    b.step(4)
+    b.MoveAbsolute(0, 0, IF)
+    b.MoveVelocity(0, 3, IF)
+    b.set(IF, 2, error=0)
+    b.set(IF, 4, error=0, clear=-1)
+    b.step(20)
+
+
+def refused(b: Bench) -> None:
+    """Moves without speed or rates, at first and under way, pauses of one axis, searches of nothing."""
+    for axis, name in enumerate(("mcsmaxvel", "mcsaccel", "mcsdecel", "pcsmaxvel")):
+        b.set(IF, axis, clear=-1)
+        b.step(1)
+        b.set(IF, axis, run=-1, ena=-1, **{name: 0})
+        b.MoveRelative(70, axis, IF)
+        b.MoveSuperimposed(30, axis, IF)
+    b.step(8)
+    for axis, name in enumerate(("mcsmaxvel", "mcsaccel", "mcsdecel", "pcsmaxvel")):
+        b.set(IF, axis, error=0, stopfilt=0, **{name: 5})
+        b.MoveRelative(-400, axis, IF)
+    b.step(12)
+    for axis, name in enumerate(("mcsmaxvel", "mcsaccel", "mcsdecel", "mcsmaxvel")):
+        b.set(IF, axis, haltmode=-(axis & 1), haltstep=1, **{name: 0})
+    b.step(5)
+    for axis in range(4):
+        b.set(IF, axis, haltstep=0)
+    b.step(20)
+    b.set(IF, 2, homeseq=0, gohome=-1)
+    for axis in range(4):
+        b.set(
+            IF,
+            axis,
+            error=0,
+            mcsmaxvel=6,
+            mcsaccel=1.25,
+            mcsdecel=0.75,
+            mcsgo=0,
+            mcsvel=0,
+            highvel=4,
+            homepos=-9,
+        )
+    b.set(IF, 1, ciraxis=-1, cirpos=0)
+    b.HomeSwitchIndex1(0, 1, 0, 2, IF)
+    b.step(60)
+
+
+def coupled(b: Bench) -> None:
+    """Pacing that jumps past its end, spans of nothing, starts that are kept, refused or in the way."""
+    b.MoveVelocity(7 * ONE + 99, 0, IF)
+    b.step(8)
+    b.GearInDist(1.5, 0, 0, 0, 0, 3, 1, IF)
+    b.MoveInTime(0, 25, 4, IF)
+    b.set(IF, 3, startsyn=-1)
+    for axis in (1, 4):
+        b.set(IF, axis, startsyn=-1)
+    b.step(3)
+    b.GearFree(0.25, 0, 0, 3, IF)
+    b.MoveInTime(40, -90, 5, IF)
+    b.set(IF, 5, startsyn=-1)
+    b.set(IF, 2, nsoftlim=-30, aioctr=0x8000, error=0, stopfilt=-1)
+    b.MoveVelocity(-5 * ONE, 2, IF)
+    b.step(9)
+    b.MoveAbsolute(3, 5, IF)
+    b.set(IF, 1, engear=0)
+    b.MoveVelocity(0, 1, IF)
+    b.step(20)
+    b.set(IF, 4, pathabs=0)
+    b.set(IF, 5, pathabs=0)
+    b.set(
+        IF, segmap_x1=4, segmap_y1=5, pathaxisnum1=2, pathacc1=0.5, segtgvel1=4, segendvel1=2, startpath1=-1
+    )
+    b.PutContourData([6, -8, 3, 4, -5, 12, 9, 1], 8, P1)
+    b.PutContourData([0, 7, 8, 0], 4, P1)
+    b.AddArcLine(segment(10, 10, center=(10, 0)), P1)
+    b.step(6)
+    b.MoveInTime(15, 9, 4, IF)
+    b.set(IF, 4, startsyn=-1)
+    b.GearFree(1.0, 0, 0, 5, P1)
+    b.AddLineN(segment(0, 0), P1)
+    b.AddLineN(segment(5, 4, 3), P1)
+    b.step(50)
+    b.set(IF, 4, error=0)
+    b.set(IF, 5, error=0, engear=0)
+    b.set(IF, 3, engear=0, mcstgvel=0)
+    b.set(IF, groupnum=2, group_x=3, group_y=1, groupsmooth=6, startgroup=-1)
+    b.PutContourData([30, -42] * 4, 8, C)
+    b.step(9)
+    b.AddLineN(segment(8, 9), P1)
+    b.set(IF, segmap_x1=3)
+    b.AddLineN(segment(4, 4), P1)
+    b.step(5)
+    b.set(IF, 3, error=0x40, stopmode=0)
+    factor = lib.EventInfo.of(
+        lib.CMD_SCA48i, src1=(address("curpos"), 0), src2=-98305, dest=(address("user48b1"), 0)
+    )
+    b.InstallEvent([factor], 1, IF)
+    b.step(15)
+
+
+def edges(b: Bench) -> None:
+    """What happens at the ends of numbers, and what is refused."""
+    far(b)
+    refused(b)
+    coupled(b)
+
+
+SCENES["edges"] = ("ready = true\n" + EDGES, edges)
+SCENES["edges_otherwise"] = ("ready = true\n" + OTHERWISE + EDGES, edges)
+for number in range(1, 5):
+    system = (OTHERWISE if number > 2 else "") + CARD_FILE
+    SCENES[f"walk{number}"] = ("ready = true\n" + system, partial(walk, seed=number, acts=400))
+
+
 # What the scenes show of the manual: all of it but for cards on a network, C types and what no card does.
 ELSEWHERE = re.compile(
     r"imc\.(IMC_(FindNetCard|Open\w*|Close)|option\.\w+|status\.(?!IMC_OK|IMC_OUT_OF_RANGE)\w+|type\.(IMC\w*|__int64)|concept\.rbfifo"
-    r"|struct\.NIC_INFO|file\.\w+|const\.(openMode|AXISNUM|limits)|concept\.(library|position_overflow)"
+    r"|struct\.NIC_INFO|file\.\w+|const\.(openMode|AXISNUM|limits)|concept\.library"
     r"|param\.(eventid|eventbase|out1|out2|waitfilt|waitequ|encsctr|aiod|stepmod|dirtime|steptime|clrififo|fixvel|group_[b-m]))"
 )
 CONFORMANCE = load_conformance()
