@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 from polycnc.machine import ToolConfig
 from polycnc.nc.blocks._block import BlockContext
 from polycnc.nc.blocks._channel_state import of_another_channel
@@ -107,6 +109,7 @@ def compensate_radius(block: BlockContext) -> None:
                 block.dialect.leads_out_at_once,
                 block.dialect.lead_in_beside_itself,
                 block.dialect.rapids_across_corners,
+                math.sin(block.dialect.retraced_rad),
             ),
         )
         if tip != state.tip.vector:
