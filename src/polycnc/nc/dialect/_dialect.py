@@ -143,6 +143,7 @@ class Text(StrictModel):
     """What may stand in a block besides words."""
 
     semicolon_comments: bool = Field(default=True, description="; begins a comment to the end of the line.")
+    semicolon_ends: bool = Field(default=False, description="; may end a block, at the end of its line.")
     parenthesis_comments: bool = Field(default=True, description="( ) enclose a comment.")
     unclosed_comments: bool = Field(default=False, description="A comment may end with its line.")
     blanks_in_numbers: bool = Field(
