@@ -22,7 +22,9 @@ CPL_RULES = TextRules(
     statement_characters="[]#\"'$,*<>&?!@_%:()",
     semicolon_comments=False,
 )
-BARE_RULES = TextRules(parenthesis_comments=False, statement_characters="")
+BARE_RULES = TextRules(
+    parenthesis_comments=False, statement_characters="", semicolon_comments=False, semicolon_ends=True
+)
 ALL_RULES = (PLAIN_RULES, CPL_RULES, BARE_RULES)
 
 digits = st.text("0123456789", max_size=9)
@@ -47,7 +49,7 @@ pieces = st.one_of(
     easy_words,
     st.builds(lambda letter, number: f"{letter}={number}", st.sampled_from("XY"), numbers),
     st.builds(lambda number: f"X1={number}", numbers),
-    st.sampled_from(["(note)", "(MSG, hello)", "( msg ,x)", "(open", "; rest", "(\xe4\xf6)", "()"]),
+    st.sampled_from(["(note)", "(MSG, hello)", "( msg ,x)", "(open", "; rest", "; ", "(\xe4\xf6)", "()"]),
     st.sampled_from(["/", "/3", "/0", ":", ":100", "%", "%1234", "N5", "N5 /2"]),
     st.sampled_from(
         ["GOTO", "X[1+2]", "#1=5", "A$", "X=Y", "X=-", "X-#1", '"', "X = 5 *2", "P,C5", "IF", ".L"]

@@ -164,7 +164,7 @@ def test_a_contour_without_pockets_takes_the_levels_of_the_plain_cycle() -> None
         ([(25, 2), (10, 2), (30, -9), (20, -12), (20, -14)], "comes out beyond the start"),
         ([(25, 2), (10, 2), (10, -9), (26, -9), (26, -14)], "comes out beyond the start"),
         ([(25, 2), (25, -9)], "one block only"),
-        ([(25, 2), (10, 2), (25, 2)], "leaves nothing to rough"),
+        ([(25, 2), (10, 2), (25, 2)], "comes back to where it begins"),
     ],
 )
 def test_contours_that_cannot_be_cut(points: list[tuple[float, float]], text: str) -> None:

@@ -177,7 +177,11 @@ class AllWords:
         if self._random.random() < 0.2 and "=" not in words:
             self._random.shuffle(parts)  # the order of words in a block says nothing
         if self._random.random() < 0.06 and not _ANY_WORD.search(words):
-            parts.append(self._stray())
+            stray = self._stray()
+            if not (
+                stray[0] == "F" and {"G20", "G21"} & set(parts)
+            ):  # F counts in the units before for rs274
+                parts.append(stray)
         number = f"N{self._random.randint(1, 9999)} " if self._random.random() < 0.1 else ""
         return number + " ".join(parts)
 
@@ -218,7 +222,8 @@ class AllWords:
             for letter in self._random.sample("XYZABCDEHIJKLPQRST@^", self._random.randint(0, 4))
         ]
         block = " ".join(words)
-        return "G80" if not block or _ANY_WORD.search(block) else block
+        moved = "M6" in words  # where rs274 is after that is not known
+        return "G80" if not block or moved or _ANY_WORD.search(block) else block
 
     def _move(self) -> str:
         code = self._of("G0 ", "G1 ", "G1 ", "", "G53 G0 ", "G53 G1 ")
@@ -288,6 +293,8 @@ class AllWords:
             self._random.choice(group)
             for group in self._random.sample(groups, self._random.choice((1, 1, 2, 3)))
         ]
+        if self._compensated:  # rs274 takes the end of the move before for one in the new units
+            words = [word for word in words if word not in ("G20", "G21")] or ["G80"]
         self._inch |= "G20" in words  # rs274 mixes up units of tool offsets after it
         for word in words:
             if word in groups[0]:

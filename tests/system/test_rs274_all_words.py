@@ -50,7 +50,7 @@ KNOWN = (
 """Refusals of polycnc that LinuxCNC does not have."""
 KNOWN_OF_RS274 = ("entry arc", "read current position")
 """Refusals that polycnc does not have: a whole circle as a lead-in, #5420 in compensation."""
-MOST_OPEN = 2
+MOST_OPEN = 0
 """How many of 500 may differ: what has not been settled yet (5 of 5,000: corners of compensation, G30 of some axes
 with a turned work offset). It only shrinks."""
 _IGNORED = re.compile(r"M(6 |61|19|4[89]|5[0123]|7[0123])")

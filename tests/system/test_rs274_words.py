@@ -85,6 +85,19 @@ SAME = [
     "G42.1 D.5\nG1 X-11.998 Y17.383\nG1 X-2.596 Y17.576\nG40 G1 Y9",
     "G41.1 D2\nG1 X11.999 Y-17.688\nG1 X30.022 Y-12.397\nG40 G1 X9 Y-40",
     "G18 G42.1 D2\nG1 X-6.064 Z15.283\nG1 X-15.836 Z10.095\nG40 G1 X9",
+    # which turns back, but for 0.05 rad, as one that turns about the corner; from and to an arc outside it is trimmed
+    "G41.1 D2\nG1 X10 Y1\nG1 X70 Y1.5\nG1 X0 Y2.5\nG1 Y20\nG40 G1 X30 Y50",
+    "G41.1 D.5\nG1 X-5 Y8\nG1 X-20 Y18\nG2 X-23.371289 Y13.043851 I-1.575966 J-2.552711\nG40 G1 X-28 Y-2",
+    "G42.1 D.5\nG1 X-5 Y8\nG1 X-20 Y18\nG2 X-23.371289 Y13.043851 I-1.575966 J-2.552711\nG40 G1 X-28 Y-2",
+    # with which positions are those of the tool
+    "G41.1 D2\nG1 Y-11\nG1 X6\nG1 X[#<_y>] Y[#<_x>/3]\nG1 X[#<_y>] Y20\nG40 G1 X50",
+    # arcs whose end lies off the circle: more in inches, and no more than 100 times as much
+    "G20\nF60 G2 X5 I2.4986",
+    "G2 X50 I24.986",
+    "G2 X2000 I999.5",
+    # a comment among the arguments, and a program with a name
+    "O<part>\nO1 SUB\nG0 X#1 Y#2\nO1 ENDSUB\nO1 CALL [3] (first) [4] (second)",
+    "G0 X#<_value> Y#<_value_returned>\nO1 SUB\nO1 ENDSUB [5]\nO1 CALL\nG0 X#<_value> Y#<_value_returned>",
     # which the next straight move ends, whatever it moves
     "G41.1 D2\nG1 Y10\nG1 Y20\nG40\nG0 Z4\nG42.1 D2\nG1 X30\nG1 X40\nG40 G1 X50 Z1",
     # a shift by G92 and by G52 is one shift
@@ -96,7 +109,12 @@ SAME = [
     "G59.3\nG10 L2 P9 X1 Y2 R30\nG0 X1 Y0\nG1 X5 Y7\nG2 X7 Y7 R4\nG91 G1 X3\nG90 G53 G0 X1",
     "G92 X3 Y4\nG10 L2 P1 R30 X5 Y7\nG0 X3 Y8\nG91 G0 X7\nG90 G55 G0 X1 Y3\nG54 X9 Y1",
     "G10 L2 P0 X5 Y7 R-20\nG0 X3 Y8\nG92 X1\nG0 X2 Y3\nG1 X#<_x> Y[#<_y>+1]",
+    "G10 L2 P1 X2 R30\nG0 X3 Y4\nG10 L20 P1 Y7\nG0 X1 Y2\nG10 L20 P2 X3\nG55 G0 X1 Y1\nG92 X5\nG10 L20 P1 X1 Y1\n"
+    "G54 G0 X2 Y2",
+    "T1 M6\nG43 G10 L2 P0 R45\nG0 X3 Z9\nG10 L10 P1 X1\nG43 G0 X2 Y1\nG10 L10 P1 Y2\nG10 L2 P9 X7 R20\n"
+    "G10 L11 P1 X2 Y1\nG43 G0 X1",
     # reference positions
+    "G30.1\nG10 L2 P1 X2 Y3 R20\nG0 X4 Y5 Z6\nG30 Y7 Z2\nG28 X1",
     "G0 X1 Y2 Z3\nG28.1\nG0 X5\nG30.1\nG0 X0 Y0 Z0\nG28\nG0 X9 Z0\nG30 Z4",
     # tools
     "T1 M6\nG43\nG0 X1 Z1\nG10 L1 P1 Z12 R4\nG0 Z2\nG43\nG0 Z1\nG10 L10 P1 Z5\nG43\nG0 Z2\nG10 L11 P1 Z6\nG43 G0 Z1",
@@ -176,6 +194,11 @@ REFUSED = [
         for words in ("I0 J.2 K1", "I-1 J0 K1", "I-1 J.2 K1 H1.5", "I-1 J.2 K1 E1 L1.5")
     ),
     "M3 S100\nG76 P1 Z-9 I1 J.2 K1\nX3",
+    "G20\nF60\nG2 X5 I2.4985",
+    "G2 X50 I24.9857",
+    "G2 X6000 I3001.4284",
+    "G2 X20 R9.998",
+    "G0 X3\n(ABORT, stop at #<_x>)",
     "G38.2",
     "G41.1 D1\nG38.2 Z-3",
 ]

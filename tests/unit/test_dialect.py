@@ -296,6 +296,7 @@ def test_the_dialect_of_a_program() -> None:
         ("%\nO0002\nT0101\nG0 X20. Z5.\n", "fanuc-lathe", "O0002 in line 2"),
         ("O2\nT0101 M6\nG0 X20. Y5.\n", "fanuc", "O2 in line 1"),
         ("O2\nT101\nG0 X20. Z5.\n", "fanuc-lathe", "O2 in line 1"),
+        ("O2 ; shaft\nT0101 ; rough\nG0 X20. Z5. ; start\n", "fanuc-lathe", "O2 in line 1"),
         ("O3 (G15 H1, P1=7)\n(P2=12, IF P2 IS LONG)\nG15\nG33 Z-4. E2.5\n", "fanuc", "O3 in line 1"),
         ("(a)\n#<depth> = 5\n", "linuxcnc", "#<d in line 2"),
         ("#1=2\no100 while [#1 gt 0]\n", "linuxcnc", "o100 while in line 2"),
@@ -310,6 +311,7 @@ def test_the_dialect_of_a_program() -> None:
 def test_the_dialect_is_guessed_and_says_why(program: str, name: str, reason: str) -> None:
     chosen = choose_dialect(ProgramText.from_text(program, "part.nc"))
     assert (chosen.dialect.name, chosen.reason, chosen.problem) == (name, reason, None)
+    assert chosen.dialect.text.semicolon_comments or "; s" not in program
     assert choose_dialect(ProgramText.from_text(program, "part.nc"), "haas").reason == ""
 
 

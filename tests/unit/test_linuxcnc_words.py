@@ -36,7 +36,7 @@ def test_where_it_goes(program: str, end: dict[str, float], tmp_path: Path) -> N
 
 
 REFUSALS = [
-    ("G10 L20 P1 X3 R5", "work offset that turns"),
+    ("G10 L20 P1 X3 R5", "G10 L20 with R"),
     ("G10 L3 P1 X3", "L3 is not there"),
     ("G10 P1 X3", "without L and P"),
     ("G10 L1 P3 X3", "tool 3 is not in the tool table"),

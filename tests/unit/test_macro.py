@@ -131,6 +131,11 @@ def test_a_goto_finds_the_next_block_of_a_number_before_the_first() -> None:
     assert (variables.get(100), variables.get(101)) == (4.0, 8.0)
 
 
+def test_a_semicolon_ends_a_block_at_the_end_of_its_line() -> None:
+    _, variables = run("O1; \n#100=0;\nN60;\n#100=#100+1 ;\nIF [#100 LT 3] GOTO 60;\n#101=7 ;\t\nM30;")
+    assert (variables.get(100), variables.get(101)) == (3.0, 7.0)
+
+
 def test_a_statement_may_stand_right_behind_its_block_number() -> None:
     made, variables = run(
         "N10GOTO20\n#100=1\nN20DO1\n#101=#101+1\nIF[#101 GE 3]GOTO30\nN25END1\nN30WHILE[#102 LT 4]DO2\n"

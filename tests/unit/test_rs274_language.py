@@ -81,7 +81,22 @@ def test_messages_show_parameters(tmp_path: Path) -> None:
     assert "MSG: hello" in texts
 
 
+def test_texts_write_parameters_as_they_say(tmp_path: Path) -> None:
+    """As LinuxCNC 2.9 does: a form counts up to the end of its text, and what has no value is shown as that."""
+    (tmp_path / "part.ngc").write_text(
+        "#1=2.123456789 #<a b>=3.5\n(DEBUG,%d#1 %f#1 #<ab>)\n(PRINT,%.7f#1 50% %x #<none> #9999 # #<_line>)\n"
+        "(DEBUG,#<_ini[a]b> #<_value>)\n#5599=0\n(DEBUG,not shown)\nG0 X1\n"
+    )
+    texts = [message.text for message in polycnc.run(tmp_path / "part.ngc").messages]
+    assert [text.removeprefix("MSG: ") for text in texts if text.startswith("MSG")] == [
+        "2 2.1235 3.5000",
+        "2.1234568 50% %x ###### ###### # 3.0000000",
+        "###### 0.000000",
+    ]
+
+
 REFUSED = [
+    ("G0 X1\n#1=2\n(ABORT, no tool %d#1)", "no tool 2", 3),
     ("G0 X1\nG0 X[1/#1]", "division by zero", 2),
     ("G0 X#<none>", "#<none> has no value", 1),
     ("#<_x>=1", "can only be read", 1),

@@ -37,6 +37,23 @@ def wrong(program: str, start: str = "G0 X50. Z2.\n") -> str:
 # --- words
 
 
+@pytest.mark.parametrize(
+    ("one", "two", "start"),
+    [
+        ("G71 P10 Q20 U1. W0.1 D4. F0.3\n{}", "G71 U4. R0.5\nG71 P10 Q20 U1. W0.1 F0.3\n{}", "G0 X60. Z2.\n"),
+        ("G71 P10 Q20 U1. D4000 F0.3\n{}", "G71 U4. R0.5\nG71 P10 Q20 U1. F0.3\n{}", "G0 X60. Z2.\n"),
+        ("G75 X44. Z-2. I3. K2000 D0.25 F0.1\n", "G75 X44. Z-2. P3000 Q2000 R0.25 F0.1\n", "G0 X50. Z2.\n"),
+        ("G74 X44. Z-9. I3. K2. F0.1\n", "G74 X44. Z-9. P3000 Q2000 F0.1\n", "G0 X50. Z2.\n"),
+        ("G76 X27.4 Z-20. K1.3 D500 F2.\n", "G76 X27.4 Z-20. P1300 Q500 F2.\n", "G0 X30. Z5.\n"),
+    ],
+)
+def test_a_cycle_in_one_block_is_that_in_two(one: str, two: str, start: str) -> None:
+    """As FANUC's Series 15 and Haas lathes have them: D, I and K say what the first block says else, and P and Q."""
+    found = turned(one.format(CONTOUR), start)
+    assert len(found) > 3
+    assert found == turned(two.format(CONTOUR), start)
+
+
 def test_x_is_a_diameter_and_u_w_are_ways() -> None:
     assert turned("G1 X40. Z-3.5 F0.2\nU-5. W-1.5\nU1.\nW0.5 X30.\n") == [
         *("line X20 Z-3.5 F200", "line X17.5 Z-5 F200", "line X18 F200", "line X15 Z-4.5 F200")

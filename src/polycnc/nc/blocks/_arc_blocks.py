@@ -20,9 +20,13 @@ from polycnc.nc.blocks._moves import Arc, Point
 from polycnc.nc.blocks._words import code_text
 from polycnc.nc.modal._modal import (
     ARC_ABSOLUTE,
+    ARC_INCH_TOLERANCE,
+    ARC_MOST,
     ARC_RELATIVE,
+    ARC_SHORT_RADIUS,
     ARC_TOLERANCE,
     CENTER_LETTERS,
+    INCH,
     LARGEST,
     PLANE,
     PLANE_LETTERS,
@@ -157,10 +161,12 @@ def _circle(
 ) -> tuple[float, float, float]:
     """Return the centre and the sweep of an arc of up to one turn."""
     modal = block.after.modal
-    tolerance = float(modal.real[ARC_TOLERANCE])
+    tolerance = float(modal.real[ARC_INCH_TOLERANCE if modal.whole[INCH] else ARC_TOLERANCE])
     ends = start[p], start[q], end[p], end[q]
     if radius is not None:
-        found = arc_by_radius(*ends, radius * length_scale(modal), clockwise, tolerance)
+        found = arc_by_radius(
+            *ends, radius * length_scale(modal), clockwise, float(modal.real[ARC_SHORT_RADIUS])
+        )
     else:
         letters = CENTER_LETTERS[int(modal.whole[PLANE])]
         if block.after.frame.active:
@@ -170,7 +176,15 @@ def _circle(
                 _center(block, axis, center.get(letter), start)
                 for axis, letter in zip((p, q), letters, strict=True)
             ]
-        found = arc_by_center(*ends, at[0], at[1], clockwise, tolerance, float(modal.real[ARC_RELATIVE]))
+        found = arc_by_center(
+            *ends,
+            at[0],
+            at[1],
+            clockwise,
+            tolerance,
+            float(modal.real[ARC_RELATIVE]),
+            float(modal.real[ARC_MOST]),
+        )
     status, center_p, center_q, sweep, off = found
     if status != ARC_OK:
         what, hint = _ARC_PROBLEMS[status]

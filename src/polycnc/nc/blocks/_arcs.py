@@ -38,10 +38,12 @@ def arc_by_center(
     clockwise: bool,
     tolerance: float,
     relative: float,
+    most: float,
 ) -> tuple[int, float, float, float, float]:
     """Return (status, center_p, center_q, sweep rad, difference of the radii) of an arc by its centre.
 
-    The radii at start and end may differ by `tolerance`, or by `relative` of the radius if that is more.
+    The radii at start and end may differ by `tolerance`, or by `relative` of the larger one if that is more, but by no
+    more than `most` tolerances.
     """
     radius = _distance(start_p - center_p, start_q - center_q)
     radius_end = _distance(end_p - center_p, end_q - center_q)
@@ -50,7 +52,7 @@ def arc_by_center(
         return ARC_TOO_LARGE, center_p, center_q, 0.0, off
     if radius <= 0.0 or radius_end <= 0.0:
         return ARC_NO_RADIUS, center_p, center_q, 0.0, off
-    if off > max(tolerance, relative * radius):
+    if off > max(tolerance, relative * max(radius, radius_end)) or off > most * tolerance:
         return ARC_OFF_CIRCLE, center_p, center_q, 0.0, off
     first = math.atan2(start_q - center_q, start_p - center_p)
     last = math.atan2(end_q - center_q, end_p - center_p)

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import copy
 import math
+from collections.abc import Sequence
 from dataclasses import replace
 from enum import Enum, IntEnum
 from typing import Literal, NamedTuple
@@ -18,6 +19,7 @@ from polycnc.nc.blocks._compensation_errors import refusal
 from polycnc.nc.blocks._moves import Arc, Feed, Line, Move, Point, QueueItem, Spline, Wait
 from polycnc.nc.blocks._offset_geometry import (
     COLLAPSED_MM,
+    RETRACE,
     XY,
     Joint,
     Leg,
@@ -60,12 +62,14 @@ class Leads(NamedTuple):
 
     The lead-in may be an arc; any straight move after the cancellation is the lead-out; a straight lead-in ends
     beside its own end, and the corner after it is one like others. A rapid move goes straight across an outside corner.
+    A corner whose turn is a half one but for this sine is a path traced back.
     """
 
     by_arc: bool = False
     leaves_at_once: bool = False
     beside_itself: bool = False
     rapids_across: bool = False
+    retrace: float = RETRACE
 
 
 _STRAIGHT = Leads()
@@ -147,16 +151,7 @@ class RadiusCompensation:
         lead: Literal["tangent_perpendicular"] = "tangent_perpendicular",
         shallow_deg: float = 1.0,
     ) -> None:
-        if outer not in ("arc", "intersection"):
-            raise ConfigurationError(
-                f"outer corners cannot be {outer!r}", hint="Use 'arc' or 'intersection'."
-            )
-        if lead != "tangent_perpendicular":
-            raise ConfigurationError(f"unknown lead {lead!r}", hint="Use 'tangent_perpendicular'.")
-        if not 0.0 <= shallow_deg <= 90.0:
-            raise ConfigurationError(
-                f"shallow_deg is {shallow_deg}", hint="Use an angle from 0 to 90 degrees."
-            )
+        _check_settings(outer, lead, shallow_deg)
         self._shallow_cosine = math.cos(math.radians(shallow_deg))
         self._meet_cosine = self._shallow_cosine if outer == "arc" else 0.0
         self._plane = _Plane(0, 1, 2)
@@ -257,6 +252,13 @@ class RadiusCompensation:
         elif self._mode is _Mode.ON:
             self._mode = _Mode.LEAVING
 
+    def beside(self, point: Sequence[float]) -> list[float]:
+        """Return a programmed position moved beside the end of the last plane move, where there is one."""
+        found = list(point)
+        if self._leg is not None and self._mode in (_Mode.ON, _Mode.LEAVING):
+            found[self._plane.p], found[self._plane.q] = end_offset(self._leg, self._offset)
+        return found
+
     def flush(self) -> list[QueueItem]:
         """Give out everything held back; the last plane move ends beside its own end point. Stays active.
 
@@ -348,7 +350,8 @@ class RadiusCompensation:
     def _corner(self, before: Move, leg: Leg, after: Move, next_leg: Leg, out: list[QueueItem]) -> None:
         """Emit the pending move up to the corner, then what the corner itself needs."""
         rapid, across = _rapid_corner(before, after, self._leads)
-        joint = join(leg, next_leg, self._offset, min(self._meet_cosine, 0.0) if rapid else self._meet_cosine)
+        meet = min(self._meet_cosine, 0.0) if rapid else self._meet_cosine
+        joint = join(leg, next_leg, self._offset, meet, self._leads.retrace)
         if joint is None:
             raise refusal("no_intersection", after.line, tool=abs(self._offset))
         if joint.sweep_rad == 0.0:
@@ -366,7 +369,7 @@ class RadiusCompensation:
         if turn_cosine(leg, next_leg) >= self._shallow_cosine:
             self._straight(after, start_offset(next_leg, self._offset), out)
             return
-        if turns_inside(leg, next_leg, self._offset):
+        if turns_inside(leg, next_leg, self._offset, self._leads.retrace):
             raise refusal("stopped_inside", after.line)
         joint = round_joint(leg, next_leg, self._offset)
         if _is_rapid(before) and _is_rapid(after):
@@ -431,6 +434,15 @@ class RadiusCompensation:
         first, last = self._plane.point(after.start, start), self._plane.point(after.start, end)
         out.append(Line(first, last, after.feed, _is_rapid(after), False, after.line, after.tag))
         self._at = end
+
+
+def _check_settings(outer: str, lead: str, shallow_deg: float) -> None:
+    if outer not in ("arc", "intersection"):
+        raise ConfigurationError(f"outer corners cannot be {outer!r}", hint="Use 'arc' or 'intersection'.")
+    if lead != "tangent_perpendicular":
+        raise ConfigurationError(f"unknown lead {lead!r}", hint="Use 'tangent_perpendicular'.")
+    if not 0.0 <= shallow_deg <= 90.0:
+        raise ConfigurationError(f"shallow_deg is {shallow_deg}", hint="Use an angle from 0 to 90 degrees.")
 
 
 def _rapid_corner(before: Move, after: Move, leads: Leads) -> tuple[bool, bool]:

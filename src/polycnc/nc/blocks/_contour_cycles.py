@@ -25,7 +25,7 @@ from polycnc.nc.blocks._corner_blocks import refuse_open
 from polycnc.nc.blocks._handlers import carries_out
 from polycnc.nc.blocks._moves import Arc, Line, QueueItem, Spline
 from polycnc.nc.blocks._outcomes import NEXT
-from polycnc.nc.blocks._turning import Piece, Roughing, Step, TurningError, exchanged, repeat, rough
+from polycnc.nc.blocks._turning import Piece, Roughing, Step, Turning, TurningError, exchanged, repeat, rough
 from polycnc.nc.blocks._turning_pockets import rough_pockets
 from polycnc.nc.blocks._word_checks import refuse_unused
 from polycnc.nc.blocks._words import GWord, whole_number
@@ -152,7 +152,7 @@ def contour_cycle(
         ProgramError: the contour cannot be roughed, a word makes no sense, a limit would be passed.
     """
     turns.refuse_compensation(block)
-    turning = block.after.turning
+    turning = _with_depth(block, g)
     u, w = turns.length(block, "U") or 0.0, turns.length(block, "W") or 0.0
     modal, (x, _) = block.after.modal, turns.axes(block)
     is_diameter = float(modal.scale[x]) < 0.75 * length_scale(modal)
@@ -175,6 +175,16 @@ def contour_cycle(
     except TurningError as error:
         raise block.problem(f"G{g.code}: {error.what}", error.hint, g.word) from None
     return list(turns.items(block, steps, block.start))
+
+
+def _with_depth(block: BlockContext, g: GWord) -> Turning:
+    """Return what is in force for a cycle in one block, whose D is the depth of a cut."""
+    turning = block.after.turning
+    if g.action not in _DEPTHS or "D" not in block.words.by_letter:
+        return turning
+    field, _ = _DEPTHS[g.action]
+    changed: dict[str, Any] = {field: (turns.increments(block, "D"), getattr(turning, field)[1])}
+    return replace(turning, **changed)
 
 
 def _pieces(block: BlockContext, moves: Sequence[Line | Arc]) -> list[Piece]:

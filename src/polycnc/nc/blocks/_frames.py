@@ -10,6 +10,7 @@ from polycnc.nc.blocks._block import BlockContext
 from polycnc.nc.blocks._handlers import carries_out, refuse_compensation
 from polycnc.nc.blocks._tables import ADDITIONAL_OFFSETS, COMMON_OFFSET, WORK_SYSTEMS, additional_offset
 from polycnc.nc.blocks._tool_offsets import set_tool
+from polycnc.nc.blocks._turned_offsets import other_frame, zero_that_reads
 from polycnc.nc.blocks._turning_data import set_turning_data
 from polycnc.nc.blocks._word_checks import refuse_rest
 from polycnc.nc.blocks._words import GWord, code_text, whole_number
@@ -242,15 +243,13 @@ def _set_system(block: BlockContext, g: GWord, table: int, name: str) -> None:
             f"the angle R{angle:g} is too large", "Write up to a turn.", block.words.first("R")
         )
     if table == 20:
-        if angle is not None or state.frame.active:
+        if angle is not None:
+            raise block.problem(f"G{g.code} L20 with R", "Turn with L2.", block.words.first("R"))
+        if other_frame(state):
             raise block.problem(
-                f"G{g.code} L20 with a work offset that turns",
-                "Set it with L2.",
-                block.words.first("R") or g.word,
+                f"G{g.code} L20 while positions are turned or scaled", "Cancel that first.", g.word
             )
-        within = modal.offset - state.coordinates.first_offset(tables)
-        here = (modal.position - within).tolist()
-        values = {axis: here[axis] - value for axis, value in values.items()}
+        values = zero_that_reads(state, name, values)
     if angle is not None and NO_AXIS in (modal.letter_axis[ord("X") - 65], modal.letter_axis[ord("Y") - 65]):
         raise block.problem("the machine has no plane XY to turn", "Remove R.", block.words.first("R"))
     refuse_rest(block, g)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection
 from dataclasses import replace
 
 from polycnc.machine import first_contact
@@ -182,10 +183,9 @@ def return_to_reference(block: BlockContext, g: GWord) -> list[Line]:
         motion.turned(
             block, index, axis.reference_position(number) if kept is None else kept[index], middle[index]
         )
-        if index in values or not values
-        else middle[index]
         for index, axis in enumerate(block.after.machine.axes)
     )
+    home = _home_of(block, values, middle, home)
     limits.check(block, home, "would go home to")
     if kept is None:
         _remark_home(block, g, [index for index in range(len(home)) if index in values or not values])
@@ -193,6 +193,25 @@ def return_to_reference(block: BlockContext, g: GWord) -> list[Line]:
         Line(start, middle, Feed(), True, True, block.line),
         Line(middle, home, Feed(), True, True, block.line),
     ]
+
+
+def _home_of(
+    block: BlockContext, named: Collection[int], middle: tuple[float, ...], home: tuple[float, ...]
+) -> tuple[float, ...]:
+    """Return where the named axes, all if there are none, are at home: those of the turned work offset, if it turns."""
+    if not named:
+        return home
+    turn, p, q = block.after.coordinates.turn, middle, home
+    zero = block.after.modal.offset.tolist()
+    if turn is not None:
+        p, q = (
+            block.after.frame.back([at - of for at, of in zip(each, zero, strict=True)])
+            for each in (middle, home)
+        )
+    chosen = [q[axis] if axis in named else at for axis, at in enumerate(p)]
+    if turn is None:
+        return tuple(chosen)
+    return tuple(at + of for at, of in zip(block.after.frame.forward(chosen), zero, strict=True))
 
 
 def _remark_home(block: BlockContext, g: GWord, axes: list[int]) -> None:

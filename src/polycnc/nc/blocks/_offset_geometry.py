@@ -18,7 +18,7 @@ COLLAPSED_MM = 1e-6
 # How far a collapsed arc may lie off the neighbour's offset curve.
 COLLAPSED_GAP_MM = 1e-5
 # Below this sine a turn by almost 180 degrees is a retraced path; curvature says which side is inside.
-_RETRACE = 1e-7
+RETRACE = 1e-7
 # An almost tangent corner is joined without solving: the arc radius error is d^2 turn^2 / 8 R <= 1e-10 / 8.
 _TANGENT = 1e-10
 # Both intersections count as equally near the corner below this share of the radius.
@@ -142,23 +142,25 @@ def turn_cosine(before: Leg, after: Leg) -> float:
     return before.tx1 * after.tx0 + before.ty1 * after.ty0
 
 
-def turns_inside(before: Leg, after: Leg, offset: float) -> bool:
+def turns_inside(before: Leg, after: Leg, offset: float, retrace: float = RETRACE) -> bool:
     """Tell whether the path turns towards the offset side, so that the offset legs overlap."""
     cross = before.tx1 * after.ty0 - before.ty1 * after.tx0
-    if abs(cross) < _RETRACE and turn_cosine(before, after) < 0.0:
+    if abs(cross) < retrace and turn_cosine(before, after) < 0.0:
         curvature = before.sense / before.radius1 + after.sense / after.radius0
         return curvature * offset < 0.0
     return cross * offset > 0.0
 
 
-def join(before: Leg, after: Leg, offset: float, meet_cosine: float) -> Joint | None:
+def join(
+    before: Leg, after: Leg, offset: float, meet_cosine: float, retrace: float = RETRACE
+) -> Joint | None:
     """Join two offset legs at their common corner.
 
     Inside corners meet at the intersection of the offset curves. Outside corners do too while the cosine of
     the turn is at least `meet_cosine`; sharper ones, and those without an intersection, get an arc about the
     corner. Returns None when an inside corner has no intersection: the tool does not fit.
     """
-    inside = turns_inside(before, after, offset)
+    inside = turns_inside(before, after, offset, retrace)
     if inside or turn_cosine(before, after) >= meet_cosine:
         point = _meeting_point(before, after, offset)
         if point is not None:
@@ -171,7 +173,7 @@ def join(before: Leg, after: Leg, offset: float, meet_cosine: float) -> Joint | 
 def round_joint(before: Leg, after: Leg, offset: float) -> Joint:
     """Join two offset legs by an arc about the corner, from beside the first leg to beside the second."""
     cross = before.tx1 * after.ty0 - before.ty1 * after.tx0
-    turn = math.atan2(abs(cross), turn_cosine(before, after))
+    turn = math.atan2(-math.copysign(cross, cross * offset), turn_cosine(before, after)) % math.tau
     return Joint(end_offset(before, offset), start_offset(after, offset), -math.copysign(turn, offset))
 
 
@@ -211,10 +213,10 @@ def _meeting_point(before: Leg, after: Leg, offset: float) -> XY | None:
         return after.x0 - (before.ty1 + after.ty0) * scale, after.y0 + (before.tx1 + after.tx0) * scale
     if not before.sense:
         px, py = end_offset(before, offset)
-        return _line_circle(px, py, before.tx1, before.ty1, after.cx, after.cy, radius2, -1.0)
+        return _line_circle(px, py, before.tx1, before.ty1, after.cx, after.cy, radius2, -1.0, cosine)
     if not after.sense:
         px, py = start_offset(after, offset)
-        return _line_circle(px, py, after.tx0, after.ty0, before.cx, before.cy, radius1, 1.0)
+        return _line_circle(px, py, after.tx0, after.ty0, before.cx, before.cy, radius1, 1.0, cosine)
     return _circle_circle(before, after, radius1, radius2)
 
 
@@ -225,16 +227,27 @@ def _collapsed(leg: Leg, neighbour: XY) -> XY | None:
 
 
 def _line_circle(
-    px: float, py: float, ux: float, uy: float, cx: float, cy: float, radius: float, overlap: float
+    px: float,
+    py: float,
+    ux: float,
+    uy: float,
+    cx: float,
+    cy: float,
+    radius: float,
+    overlap: float,
+    cosine: float,
 ) -> XY | None:
-    """Return the intersection nearest to p, beside the corner; on a tie the one towards `overlap`."""
+    """Return the intersection nearest to p, beside the corner; on a tie the one towards `overlap`.
+
+    Where the path turns back and p lies inside the circle, the line is trimmed, not prolonged.
+    """
     along = (cx - px) * ux + (cy - py) * uy
     across = ux * (cy - py) - uy * (cx - px)
     square = (radius - across) * (radius + across)
     if square < 0.0:
         return None
     half = math.sqrt(square)
-    if abs(along) <= _TIE * radius:
+    if abs(along) <= _TIE * radius or (cosine < 0.0 and abs(along) < half):
         distance = along + overlap * half
     else:
         distance = along - math.copysign(half, along)

@@ -6,6 +6,7 @@ from polycnc.machine import ToolConfig
 from polycnc.nc.blocks._block import BlockContext
 from polycnc.nc.blocks._channel_state import ChannelState
 from polycnc.nc.blocks._motion import axis_words, named_axes
+from polycnc.nc.blocks._turned_offsets import other_frame, tool_that_reads
 from polycnc.nc.blocks._word_checks import refuse_rest
 from polycnc.nc.blocks._words import GWord, whole_number
 from polycnc.nc.modal._actions import Action, Group
@@ -97,13 +98,25 @@ def diameter_of(block: BlockContext, g: GWord) -> ToolConfig:
     return ToolConfig.model_construct(**{**dict(ToolConfig()), "radius_mm": radius, "tip": TURNED_TIPS[tip]})
 
 
+def _own_size(block: BlockContext) -> dict[str, float]:
+    """Take R and Q of a tool: its radius, and where its tip lies."""
+    changes: dict[str, float] = {}
+    if (radius := block.words.length("R")) is not None:
+        if radius < 0.0:
+            raise block.problem("the radius is negative", "Write R from 0 up.", block.words.first("R"))
+        changes["radius_mm"] = radius * length_scale(block.after.modal)
+    if (tip := block.words.take("Q")) is not None:
+        changes["tip"] = TURNED_TIPS[whole_number(tip, "where a tip lies", block.problem, 9)]
+    return changes
+
+
 def set_tool(block: BlockContext, g: GWord, table: int, number: int) -> None:
     """Set a tool of the table: L1 to values, L10 and L11 so that the present position reads them.
 
     Raises:
         ProgramError: there is no such tool, or a word has no meaning.
     """
-    state, tables, modal = block.after, block.after.tables, block.after.modal
+    state, tables = block.after, block.after.tables
     if not tables.has_tool(number):
         raise block.problem(
             f"tool {number} is not in the tool table", "Add it to the machine file.", block.words.first("P")
@@ -114,30 +127,23 @@ def set_tool(block: BlockContext, g: GWord, table: int, number: int) -> None:
                 f"{letter} is an angle of a tool, which tools do not have here", "Remove it.", word
             )
     values = axis_words(block)
-    if table != 1 and state.frame.active:
-        raise block.problem(
-            f"G{g.code} L{table} while positions are turned",
-            "Cancel rotation, scaling and mirroring first.",
-            g.word,
-        )
-    if table == 10:
-        ways = modal.position - (modal.offset - state.tool_offset)
-    elif table == 11:
-        ways = modal.position - tables.work_offset(REFERENCE_SYSTEM)
+    if table != 1:
+        if other_frame(state):
+            raise block.problem(
+                f"G{g.code} L{table} while positions are turned or scaled", "Cancel that first.", g.word
+            )
+        name = state.coordinates.work[0] if table == 10 else REFERENCE_SYSTEM
+        shifts = offsets_of(state, tables.tool(number))
+        values = tool_that_reads(state, name, values, shifts, shifted=table == 10)
     changes: dict[str, float] = {}
     for axis, value in values.items():
-        name = state.axis_names[axis]
-        if name not in _FIELDS:
+        letter = state.axis_names[axis]
+        if letter not in _FIELDS:
             raise block.problem(
-                f"a tool has no offset along {name}", "Tools shift X, Y and Z.", block.words.first(name)
+                f"a tool has no offset along {letter}", "Tools shift X, Y and Z.", block.words.first(letter)
             )
-        changes[_FIELDS[name]] = value if table == 1 else float(ways[axis]) - value
-    if (radius := block.words.length("R")) is not None:
-        if radius < 0.0:
-            raise block.problem("the radius is negative", "Write R from 0 up.", block.words.first("R"))
-        changes["radius_mm"] = radius * length_scale(modal)
-    if (tip := block.words.take("Q")) is not None:
-        changes["tip"] = TURNED_TIPS[whole_number(tip, "where a tip lies", block.problem, 9)]
+        changes[_FIELDS[letter]] = value
+    changes |= _own_size(block)
     if not changes:
         raise block.problem(f"G{g.code} L{table} without a value", "Add X, Y, Z, R or Q.", g.word)
     refuse_rest(block, g)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 from polycnc.machine import ToolConfig
 from polycnc.nc.blocks._block import BlockContext
 from polycnc.nc.blocks._channel_state import of_another_channel
@@ -9,7 +11,7 @@ from polycnc.nc.blocks._compensation import Leads, Side
 from polycnc.nc.blocks._tip import TIPS, TipShift
 from polycnc.nc.blocks._tool_offsets import OFFSETS, diameter_of, shift_by_tool, tool_data
 from polycnc.nc.blocks._words import GWord, whole_number
-from polycnc.nc.modal._actions import Action, Group
+from polycnc.nc.modal._actions import Action, Family, Group
 from polycnc.nc.modal._modal import NO_AXIS, PLANE, PLANE_YZ, PLANE_ZX
 from polycnc.nc.text._scan_plain import Word
 
@@ -107,6 +109,7 @@ def compensate_radius(block: BlockContext) -> None:
                 block.dialect.leads_out_at_once,
                 block.dialect.lead_in_beside_itself,
                 block.dialect.rapids_across_corners,
+                math.sin(block.dialect.retraced_rad),
             ),
         )
         if tip != state.tip.vector:
@@ -118,7 +121,9 @@ def compensate_radius(block: BlockContext) -> None:
 def _d_word(block: BlockContext, g: GWord | None) -> Word | None:
     """Take D, on some controls beside the code of a side only."""
     alone = g is None or not g.value
-    return None if alone and "D alone" in block.dialect.refuses else block.words.take("D")
+    other = block.words.g.get(Group.NON_MODAL)
+    cuts = other is not None and other.action.family in (Family.CONTOUR_CYCLE, Family.TURNING_CYCLE)
+    return None if alone and (cuts or "D alone" in block.dialect.refuses) else block.words.take("D")
 
 
 def _check_plane(block: BlockContext, tip: int, word: Word | None) -> None:

@@ -126,7 +126,9 @@ def rough(contour: Sequence[Piece], numbers: Roughing, *, first_rapid: bool) -> 
         )
     x_way = _sign(contour[0].end[0] - start[0])
     z_way = _sign(contour[-1].end[1] - contour[0].end[1])
-    if x_way == 0.0 or z_way == 0.0:
+    if z_way == 0.0:
+        raise TurningError("the contour comes back to where it begins", "End it where the part ends.")
+    if x_way == 0.0:
         raise TurningError("the contour leaves nothing to rough", "Start away from it.")
     _check_steady(rest, x_way, z_way)
     check_top(contour, x_way)

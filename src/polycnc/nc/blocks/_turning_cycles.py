@@ -1,6 +1,7 @@
 """Turning cycles of one block: pecking along Z or X (G74, G75), and threads in several passes (G76).
 
-P and Q count increments without a point; depths, retracts and tapers are radii.
+P and Q count increments without a point, as do I, K and D of a cycle in one block; depths, retracts and tapers are
+radii.
 """
 
 from __future__ import annotations
@@ -33,8 +34,9 @@ def cycle(block: BlockContext, g: GWord) -> list[QueueItem]:
     try:
         if g.action is Action.THREAD_PASSES:
             return list(turns.items(block, _threads(block), block.start))
-        p, q = turns.increments(block, "P"), turns.increments(block, "Q")
-        relief = turns.length(block, "R") or 0.0
+        one = _is_one_block(block)
+        p, q = (turns.increments(block, letter) for letter in ("IK" if one else "PQ"))
+        relief = turns.increments(block, "D") if one else turns.length(block, "R") or 0.0
         end = motion.target(block, motion.axis_words(block))
         retract = block.after.turning.retract
         start = turns.here(block)
@@ -45,6 +47,11 @@ def cycle(block: BlockContext, g: GWord) -> list[QueueItem]:
     except TurningError as error:
         raise block.problem(f"G{g.code}: {error.what}", error.hint, g.word) from None
     return list(turns.items(block, steps, block.start))
+
+
+def _is_one_block(block: BlockContext) -> bool:
+    """Tell whether a cycle is written in one block, with I, K and D: as FANUC's Series 15 and Haas lathes have it."""
+    return bool(set("IKD") & block.words.by_letter.keys())
 
 
 def _set_cycle_parameters(block: BlockContext, g: GWord) -> None:
@@ -77,8 +84,10 @@ def _set_cycle_parameters(block: BlockContext, g: GWord) -> None:
 
 def _threads(block: BlockContext) -> list[Step]:
     turning = block.after.turning
-    height, first = turns.increments(block, "P"), turns.increments(block, "Q")
-    taper = turns.length(block, "R") or 0.0
+    one = _is_one_block(block)
+    height, first = (turns.increments(block, letter) for letter in ("KD" if one else "PQ"))
+    taper = turns.length(block, "I" if one else "R") or 0.0
+    angle = block.words.value("A") if one else None
     end = motion.target(block, motion.axis_words(block))
     numbers = Threading(
         end=turns.plane_point(block, end),
@@ -88,7 +97,7 @@ def _threads(block: BlockContext) -> list[Step]:
         least_mm=turning.least,
         allowance_mm=turning.allowance,
         finishing=turning.finishing,
-        angle_deg=turning.angle_deg,
+        angle_deg=turning.angle_deg if angle is None else angle,
         chamfer_leads=turning.chamfer,
         lead_mm=turns.lead(block),
     )

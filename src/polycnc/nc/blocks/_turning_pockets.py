@@ -111,7 +111,7 @@ def _z_way(pieces: Sequence[Piece], first: int) -> float:
     """
     way = math.copysign(1.0, pieces[-1].end[1] - pieces[first].start[1])
     if abs(pieces[-1].end[1] - pieces[first].start[1]) < SAME_MM:
-        raise TurningError("the contour leaves nothing to rough", "Start away from it.")
+        raise TurningError("the contour comes back to where it begins", "End it where the part ends.")
     if any((piece.end[1] - piece.start[1]) * way < -SAME_MM for piece in pieces):
         raise TurningError(
             "the contour turns back along the cuts",

@@ -20,12 +20,11 @@ from pydantic import AfterValidator, Field, model_validator
 
 from polycnc.errors import UsageError, did_you_mean
 from polycnc.machine import PathConfig, StrictModel, load_toml, parse_toml, problem, validate
+from polycnc.nc.dialect._arc_settings import Arcs
 from polycnc.nc.dialect._cycle_settings import Cycles, CycleSettings
 from polycnc.nc.modal._actions import M_ACTIONS, NO_SENSE, Action, Family, Group, MAction, of_family, sense_of
 from polycnc.nc.modal._modal import (
     ABSOLUTE,
-    ARC_RELATIVE,
-    ARC_TOLERANCE,
     EXACT_STOP,
     FEED,
     FEED_MODE,
@@ -128,22 +127,6 @@ class Numbers(StrictModel):
         return self
 
 
-class Arcs(StrictModel):
-    """How exact an arc must be."""
-
-    tolerance_mm: Annotated[float, Field(ge=0)] = Field(
-        default=0.01, description="How far the end point may lie off the circle."
-    )
-    relative_tolerance: Annotated[float, Field(ge=0, lt=0.1)] = Field(
-        default=0.001, description="The same as a part of the radius; the larger of both counts."
-    )
-    turns: bool = Field(default=True, description="P says how many turns an arc makes.")
-    no_center: Literal["line", "error"] = Field(
-        default="error",
-        description='An arc with neither centre nor radius: "line" goes straight, "error" refuses it.',
-    )
-
-
 class SubPrograms(StrictModel):
     """How sub-programs are called."""
 
@@ -160,6 +143,7 @@ class Text(StrictModel):
     """What may stand in a block besides words."""
 
     semicolon_comments: bool = Field(default=True, description="; begins a comment to the end of the line.")
+    semicolon_ends: bool = Field(default=False, description="; may end a block, at the end of its line.")
     parenthesis_comments: bool = Field(default=True, description="( ) enclose a comment.")
     unclosed_comments: bool = Field(default=False, description="A comment may end with its line.")
     blanks_in_numbers: bool = Field(
@@ -269,6 +253,10 @@ class Dialect(StrictModel):
     )
     dwell_before_move: bool = Field(
         default=False, description="A block may dwell (G4) and move, in this order."
+    )
+    retraced_rad: Annotated[float, Field(gt=0, lt=0.1)] = Field(
+        default=1e-7,
+        description="With radius compensation a corner that lacks less than this of a half turn is a path traced back.",
     )
     rapids_across_corners: bool = Field(
         default=False,
@@ -446,8 +434,7 @@ class Dialect(StrictModel):
         modal.whole[RAPID_STOP] = self.rapid_exact_stop
         modal.whole[FEED_MODE] = FEED_PER_MINUTE if initial.feed_mode == "per_minute" else FEED_PER_REVOLUTION
         modal.real[FEED] = modal.real[FEED_NUMBER] = initial.feed_mm_min
-        modal.real[ARC_TOLERANCE] = self.arcs.tolerance_mm
-        modal.real[ARC_RELATIVE] = self.arcs.relative_tolerance
+        self.arcs.put_in_force(modal)
 
 
 class DialectTables(NamedTuple):

@@ -120,13 +120,18 @@ def choose_dialect(text: ProgramText, explicit: str | Path | Dialect | None = No
             return ChosenDialect(default, problem=_unreadable(text, sign, found))
     for sign in _SIGNS:
         if found := sign.pattern.search(words):
-            if sign is _NUMBERED and _REMARK.search(_BRACKETS.sub(b"", with_comments)):
+            remarks = sign is _NUMBERED and _REMARK.search(_BRACKETS.sub(b"", with_comments))
+            turret = _TURRET.search(words) and not _MILL.search(words)
+            lathe = _TURNING.get(sign.name) if turret else None
+            if remarks and lathe is None:
                 continue
-            name = sign.name
-            if (lathe := _TURNING.get(name)) and _TURRET.search(words) and not _MILL.search(words):
-                name = lathe
+            dialect = load_dialect(lathe or sign.name)
+            if remarks:
+                dialect = dialect.model_copy(
+                    update={"text": dialect.text.model_copy(update={"semicolon_comments": True})}
+                )
             line = text.position(_begin(found)).line
-            return ChosenDialect(load_dialect(name), f"{_shown(text, found)} in line {line}")
+            return ChosenDialect(dialect, f"{_shown(text, found)} in line {line}")
     return ChosenDialect(default)
 
 

@@ -65,7 +65,10 @@ from polycnc.nc.modal._actions import Action
 from polycnc.nc.modal._modal import (
     ABSOLUTE,
     ARC_ABSOLUTE,
+    ARC_INCH_TOLERANCE,
+    ARC_MOST,
     ARC_RELATIVE,
+    ARC_SHORT_RADIUS,
     ARC_TOLERANCE,
     AXIS_P,
     AXIS_Q,
@@ -427,11 +430,10 @@ def _arc(
             end_q,
             work.value[_R] * modal.scale[p],
             clockwise,
-            modal.real[ARC_TOLERANCE],
+            modal.real[ARC_SHORT_RADIUS],
         )
     else:
-        center_p = start_p
-        center_q = start_q
+        center_p, center_q = start_p, start_q
         if center & bit_p:
             center_p += work.value[whole[WORD_P]] * modal.scale[p]
         if center & bit_q:
@@ -444,8 +446,9 @@ def _arc(
             center_p,
             center_q,
             clockwise,
-            modal.real[ARC_TOLERANCE],
+            modal.real[ARC_INCH_TOLERANCE if whole[INCH] else ARC_TOLERANCE],
             modal.real[ARC_RELATIVE],
+            modal.real[ARC_MOST],
         )
     if status != ARC_OK:
         return False

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 
 from polycnc.errors import ProgramError
@@ -31,6 +32,7 @@ LONGEST_LOOP_PAUSES = 2_500
 _LEVELS_REMEMBERED = 64
 _TEXTS_REMEMBERED = 256
 _PLAIN_CALLS = MacroCalls()
+_BLOCK_END = re.compile(rb";(?=[ \t]*(?:[\r\n]|\Z))")
 _PIECE_BYTES = 1 << 20
 
 
@@ -167,7 +169,8 @@ class MacroLanguage:
         if not known and not returns and self._is_plain(text, plain, wanted):
             return None
         if id(text) not in self._latin:
-            self._latin[id(text)] = (text, text.content.decode("latin-1"), text.content.upper())
+            content = _BLOCK_END.sub(b" ", text.content) if b";" in text.content else text.content
+            self._latin[id(text)] = (text, content.decode("latin-1"), content.upper())
         _, whole, folded = self._latin[id(text)]
         begin, first_line, end = extent(whole, offset, line)
         if not force and next(wanted.lines(whole, folded, begin, end), None) is None:

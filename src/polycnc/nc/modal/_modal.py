@@ -31,7 +31,10 @@ WHOLE_COLUMNS = 16
 FEED, ARC_TOLERANCE, ARC_RELATIVE = 0, 1, 2
 FEED_NUMBER = 3  # the feed as it was programmed: of moves that only turn, it is in degrees in any unit
 SLOWEST_AXIS = 4  # the highest speed of the slowest axis, mm/s or deg/s
-REAL_COLUMNS = 5
+ARC_INCH_TOLERANCE = 5  # that of arcs where G20 is in force
+ARC_SHORT_RADIUS = 6
+ARC_MOST = 7  # how many tolerances an arc may be off however large it is
+REAL_COLUMNS = 8
 
 # Values of MOTION; a drilling cycle leaves it as it was.
 MOTION_NONE = -1

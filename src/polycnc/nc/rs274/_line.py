@@ -149,7 +149,7 @@ class LineReader:
                 line.settings.append((target, self.value()))
             elif char.lower() == "o":
                 self._at += 1
-                line.o_word = self._o_word(at)
+                line.o_word = self._o_word(at, line.comments)
             elif char.isalpha() or char in POLAR_LETTERS:
                 self._at += 1
                 line.words.append((char.upper(), self.value(), at))
@@ -272,7 +272,7 @@ class LineReader:
 
     # ------------------------------------------------------------------ O-words and comments
 
-    def _o_word(self, at: int) -> OWord:
+    def _o_word(self, at: int, comments: list[str]) -> OWord:
         char = self._next()
         computed = False
         if found := _NAME.match(self._text, self._at):
@@ -296,8 +296,11 @@ class LineReader:
         self._at = keyword.end()
         word = OWord(_bare(keyword[0]), label, computed, at)
         if word.keyword in ("call", "return", "endsub", "if", "elseif", "while", "repeat"):
-            while self._next() == "[":
-                word.arguments.append(self._bracket())
+            while (char := self._next()) and char in "[(":
+                if char == "(":
+                    comments.append(self._comment())
+                else:
+                    word.arguments.append(self._bracket())
         return word
 
     def _comment(self) -> str:

@@ -23,6 +23,8 @@ LAST_LOCAL = 30
 LAST_COMMON = 5000
 _LAST = 5602
 _OF_MACHINE = re.compile(r"_ini\[([^\]]*)\](.*)|_hal\[([^\]]*)\]")
+DEBUGS = 5599
+"""The parameter that DEBUG shows nothing without."""
 _REFERENCES = {5160 // 20: 1, 5180 // 20: 2}
 """Which reference position the parameters from #5161 and #5181 are."""
 
@@ -36,9 +38,9 @@ class Parameters:
 
     def __init__(self) -> None:
         self.common = [0.0] * (LAST_COMMON + 1)
-        self.names: dict[str, float] = {}
+        self.names: dict[str, float] = {"_value": 0.0, "_value_returned": 0.0}
         self.level = 0
-        self._others: dict[int, float] = {}
+        self._others: dict[int, float] = {DEBUGS: 1.0}
         self._state: ChannelState | None = None
         self._machine: Machine | None = None
         self._length_mm = 1.0
@@ -252,8 +254,11 @@ class Parameters:
         )
 
     def position(self, axis: int, *, machine: bool = False) -> float:
-        """Return the programmed position of an axis, in the coordinates in force or in those of the machine."""
-        found = self.state.modal.position.tolist()
+        """Return the position of an axis, in the coordinates in force or in those of the machine.
+
+        With radius compensation it is the place beside the end of the last move (LinuxCNC `interp_namedparams.cc`).
+        """
+        found = self.state.compensation.beside(self.state.modal.position.tolist())
         return self._axis(axis, found if machine else self.programmed(found))
 
     def unit(self, axis: int) -> float:

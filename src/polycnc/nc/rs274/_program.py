@@ -6,14 +6,13 @@ is for, where that is not the innermost one.
 
 from __future__ import annotations
 
-import re
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from polycnc.errors import ProgramError
 from polycnc.language import Emitter, Flaw, Traced
 from polycnc.nc.rs274._inputs import takes
 from polycnc.nc.rs274._kept_modes import KEEPING
-from polycnc.nc.rs274._line import Expression, Line, LineReader, OWord
+from polycnc.nc.rs274._line import Expression, Line, OWord
 from polycnc.nc.rs274._structure import (
     CALLS,
     HAS_PROFILES,
@@ -30,10 +29,10 @@ from polycnc.nc.rs274._structure import (
     rows_of,
     rows_within,
 )
+from polycnc.nc.rs274._texts import text_python
 from polycnc.nc.text._program import ProgramText
 from polycnc.nc.text._silent import is_silent
 
-_PARAMETER = re.compile(r"#(?:<[^>]*>|[0-9]+)")
 _MOST_ARGUMENTS = 30
 PAUSE_ROUNDS = 20_000
 
@@ -71,7 +70,8 @@ def translate(text: ProgramText, offset: int) -> Program:
         rows = rows_of(text, offset)
         structure = Structure(text)
         items, subs = structure.read(rows)
-        return _Writer(text, offset).write(items, subs, structure.numbered(items))
+        program = _Writer(text, offset).write(items, subs, structure.numbered(items))
+        return replace(program, plain=program.plain and not structure.has_name)
     except Flaw as flaw:
         raise ProgramError(flaw.what, position=text.position(flaw.at), hint=flaw.hint) from None
 
@@ -144,8 +144,7 @@ class _Writer:
     def _statement(self, row: Row, line: Line) -> None:
         put = self._out.put
         self._changes += 1
-        for text in self._texts(row, line):
-            put(f"yield says({row.number}, {row.offset}, {text})")
+        put(*self._texts(row, line))
         codes = {code.python for letter, code, _ in line.words if letter == "M"}
         if codes & {CALLS, RETURNS}:
             self._numbered(row, line)
@@ -239,23 +238,22 @@ class _Writer:
                 return repr(found[2].strip())
         return "''"
 
-    def _texts(self, row: Row, line: Line) -> list[str]:
-        """Return Python of the texts of DEBUG and PRINT, with the values of parameters in them."""
-        texts: list[str] = []
+    @staticmethod
+    def _texts(row: Row, line: Line) -> list[str]:
+        """Return Python of what MSG, DEBUG, PRINT and ABORT say."""
+        put: list[str] = []
         for comment in line.comments:
             found = TEXTS.match(comment)
             if found is None or (found[1].lower() == "msg" and (line.words or line.settings)):
                 continue
-            parts: list[str] = []
-            at = 0
-            for parameter in _PARAMETER.finditer(found[2]) if found[1].lower() != "msg" else ():
-                parts += [
-                    repr(found[2][at : parameter.start()]),
-                    f"six({LineReader(parameter[0], row.number).value().python})",
-                ]
-                at = parameter.end()
-            texts.append(" + ".join([*parts, repr(found[2][at:])]))
-        return texts
+            kind = found[1].lower()
+            if kind == "abort":
+                put.append(f"abort({text_python(found[2], row.number)})")
+                continue
+            text = repr(found[2]) if kind == "msg" else text_python(found[2], row.number)
+            says = f"yield says({row.number}, {row.offset}, {text})"
+            put.append(says if kind != "debug" else f"if debugs(): {says}")
+        return put
 
     def _o_word(self, row: Row, word: OWord) -> None:
         self._at(row, word.at)

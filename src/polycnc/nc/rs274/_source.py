@@ -19,6 +19,7 @@ from polycnc.nc.rs274._parameters import LAST_LOCAL, Parameters
 from polycnc.nc.rs274._profile import profile_of
 from polycnc.nc.rs274._program import Program, numbered_label
 from polycnc.nc.rs274._saved import SavedLevel, SavedProgram
+from polycnc.nc.rs274._texts import text_functions
 from polycnc.nc.sources._block_source import (
     Drain,
     EndSource,
@@ -135,7 +136,7 @@ class RunningProgram:
                 self._levels[-1].program.functions, self._function, owner.parameters.state, words
             ),
             "says": self._says,
-            "six": "{:f}".format,
+            **text_functions(owner.parameters),
             "times": lambda number: max(0, round(number)),
             "label": lambda number: str(round(number)),
             "call": self._asked,

@@ -13,7 +13,7 @@ from polycnc.nc.rs274._line import Line, LineReader, OWord
 from polycnc.nc.text._program import ProgramText
 from polycnc.units import whole
 
-_TEXT_WITH_VALUES = re.compile(rb"\([ \t]*(?i:debug|print)")
+_TEXT_WITH_VALUES = re.compile(rb"\([ \t]*(?i:debug|print|abort)")
 _O = re.compile(rb"[Oo]")
 _OF_LANGUAGE = re.compile(rb"[Mm][ \t]*0*(?:66|7[0-3]|9[89])(?![0-9.])|[Gg][ \t]*0*7[0-2](?![0-9])")
 _LONGEST_BEFORE_O = 256
@@ -24,12 +24,13 @@ _O_WORD = re.compile(rb"[Oo][ \t]*[0-9<]")
 _IS_CODE = re.compile(
     r"[#\[@^]|^[ \t/]*(?:[Nn][0-9.]+[ \t]*)?[Oo][ \t]*(?![0-9]+[ \t]*(?:[(;\r\n]|$))[0-9<\[#]"
     r"|M[ \t]*0*(?:66|7[0-3]|9[89])(?![0-9.])|G[ \t]*0*7[0-2](?![0-9])"
-    r"|\([ \t]*(?:debug|print)[ \t]*,",
+    r"|\([ \t]*(?:debug|print|abort)[ \t]*,",
     re.IGNORECASE,
 )
-_PROGRAM_NUMBER = re.compile(r"[ \t/]*(?:N[0-9.]+[ \t]*)?O[ \t]*([0-9]+)\s*", re.IGNORECASE)
+_PROGRAM_NUMBER = re.compile(r"[ \t/]*(?:N[0-9.]+[ \t]*)?O[ \t]*(?:([0-9]+)|<[^>]*>)\s*", re.IGNORECASE)
+"""The beginning of a program, by its number or its name."""
 _COMMENT = re.compile(r"\([^)]*\)|;.*")
-TEXTS = re.compile(r"[ \t]*(msg|debug|print)[ \t]*,(.*)", re.IGNORECASE | re.DOTALL)
+TEXTS = re.compile(r"[ \t]*(msg|debug|print|abort)[ \t]*,(.*)", re.IGNORECASE | re.DOTALL)
 _ENDS = {"if": "endif", "while": "endwhile", "repeat": "endrepeat", "sub": "endsub", "do": "while"}
 _MOST_IN_COMMON = 1000
 CALLS, RETURNS = repr(98.0), repr(99.0)
@@ -135,6 +136,7 @@ class Structure:
         self._subs: dict[str, Block] = {}
         self._open: list[Block] = []
         self._numbers: dict[str, tuple[Row, int]] = {}
+        self.has_name = False  # a program begins with its name
 
     def numbered(self, items: list[Item]) -> dict[str, list[Item]]:
         """Return what follows each O number that stands by itself, up to the first M99 outside of everything.
@@ -161,7 +163,8 @@ class Structure:
         for row in rows:
             inside = self._open[-1].bodies[-1][2] if self._open else main
             if named := _PROGRAM_NUMBER.fullmatch(_COMMENT.sub("", row.text)):
-                if not self._open:
+                self.has_name |= not named[1]
+                if not self._open and named[1]:
                     self._numbers.setdefault(str(whole(named[1])), (row, len(main)))
                 continue
             if not _IS_CODE.search(row.text) or not _is_code(row.text):

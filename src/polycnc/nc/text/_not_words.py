@@ -23,6 +23,7 @@ _BARE_COMMA = re.compile(rf"(?P<word>[A-Za-z]){_BLANKS}(?P<sign>[+-]?){_BLANKS},
 _THOUSANDS = re.compile(rf"[A-Za-z]{_BLANKS}[+-]?[0-9]+(?:,[0-9]+)+(?:[.,][0-9]*)?")
 _BETWEEN_BLOCKS = re.compile(rf",{_BLANKS}(?P<word>[A-Za-z])")
 _COMMA = re.compile(",")
+_HASH_REMARK = re.compile(rf"{_BLANKS}#(?={_BLANKS}(?:[A-Za-z]{{2}}|[0-9]+[A-Za-z]|#|\Z))")
 _LETTERS = re.compile(r"[A-Za-z]{2,}")
 
 
@@ -41,6 +42,8 @@ def syntax_hint(line: str, rules: TextRules) -> SyntaxHint | None:
     `line` is one character a byte. A comma in a number and letters without a number are slips.
     """
     code = _without_comments(line, rules)
+    if found := _HASH_REMARK.match(code):
+        return SyntaxHint(found.end() - 1, "# begins no remark", "Write remarks in brackets: (remark).")
     if _MARKS.search(code) or _KEYWORDS.search(code):
         return None
     finders = (_decimal_comma, _letters_and_commas)
@@ -63,7 +66,7 @@ def statements(text: ProgramText, rules: TextRules) -> tuple[int, int]:
 def is_statement(line: str, rules: TextRules) -> bool:
     """Tell whether a line (one character a byte) holds a statement of a language."""
     code = _without_comments(line, rules)
-    if code.lstrip().startswith("%"):
+    if code.lstrip().startswith("%") or _HASH_REMARK.match(code):
         return False
     return bool(_MARKS.search(code) or _KEYWORDS.search(code))
 

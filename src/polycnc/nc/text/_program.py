@@ -34,11 +34,13 @@ class TextRules:
     """Say what may stand in a block besides words and numbers.
 
     `statement_characters`, and '=' always, hand a block to the language front end; a character that is
-    neither one of these nor part of a word is an error. With `line_numbers` a block may begin with a bare
-    number or a point, as the blocks of CPL do. With `blanks_in_numbers` blanks between digits do not end a number.
+    neither one of these nor part of a word is an error. With `semicolon_ends` a semicolon may end a line. With
+    `line_numbers` a block may begin with a bare number or a point, as the blocks of CPL do. With `blanks_in_numbers`
+    blanks between digits do not end a number.
     """
 
     semicolon_comments: bool = True
+    semicolon_ends: bool = False
     parenthesis_comments: bool = True
     unclosed_comments: bool = False
     line_numbers: bool = False

@@ -37,7 +37,9 @@ OPEN_VALUE = 2
 """In the place of a point: a language knows the number; `value` is the byte offset at which its text begins."""
 
 # What a byte can be; everything else is OTHER.
-OTHER, BLANK, NEWLINE, LETTER, DIGIT, SIGN, POINT, OPEN, SEMICOLON, SLASH, COLON, PERCENT_SIGN = range(12)
+OTHER, BLANK, NEWLINE, LETTER, DIGIT, SIGN, POINT, OPEN, SEMICOLON, SLASH, COLON, PERCENT_SIGN, ENDS = range(
+    13
+)
 
 BLANK_BYTES = b" \t\v\f\0\x03\x11\x12\x13\x14\x1a\x7f"
 """Blanks, and the tape and transmission controls that machines skip: NUL, ETX, DC1 to DC4, SUB, DEL."""
@@ -143,6 +145,7 @@ def scan_rules(rules: TextRules) -> ScanRules:
         (b":", COLON),
         (b"%", PERCENT_SIGN),
         (b"(" if rules.parenthesis_comments else b"", OPEN),
+        (b";" if rules.semicolon_ends else b"", ENDS),
         (b";" if rules.semicolon_comments else b"", SEMICOLON),
     ):
         classes[list(members)] = kind
@@ -323,6 +326,8 @@ def _scan_block(
         elif kind == SEMICOLON:
             flags |= COMMENT
             break
+        elif kind == ENDS and _is_last(data, position + 1, rules):
+            break
         elif kind == SLASH and skip_level == 0 and _is_opening(columns.letter, first, words):
             position, skip_level = _scan_skip_mark(data, position)
         elif kind == COLON and words == first and not flags & LABEL:
@@ -486,6 +491,14 @@ def _is_word_end(data: npt.NDArray[np.uint8], position: int, rules: ScanRules) -
         return True
     kind = rules.classes[data[position]]
     return bool(kind in (LETTER, NEWLINE, OPEN, SEMICOLON))
+
+
+@compiled
+def _is_last(data: npt.NDArray[np.uint8], position: int, rules: ScanRules) -> bool:
+    """Tell whether nothing but blanks stands from here to the end of the line."""
+    while position < len(data) and rules.classes[data[position]] == BLANK:
+        position += 1
+    return bool(position == len(data) or rules.classes[data[position]] == NEWLINE)
 
 
 @compiled

@@ -183,6 +183,8 @@ class _LineReader:
         elif char == ";" and self.rules.semicolon_comments:
             self._keep_comment(self.line[self.place + 1 :])
             self.place = len(self.line)
+        elif char == ";" and self.rules.semicolon_ends and _BLANKS.fullmatch(self.line, self.place + 1):
+            self.place = len(self.line)
         elif char == "/" and self.skip_level == 0 and self._may_skip():
             match = _matched(_SKIP, self.line, self.place)
             self.skip_level = whole(match["level"] or "1")
