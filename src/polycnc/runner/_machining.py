@@ -214,7 +214,7 @@ class MachiningCollector:
             messages=[
                 f"stock: {stock}, {stock.cell_mm:g} mm a cell{self._said}",
                 *self._notes,
-                *map(_cuts_nothing, sorted(tally.unknown_tools)),
+                *map(self._cuts_nothing, sorted(tally.unknown_tools)),
             ],
             form=form,
             course=course,
@@ -222,14 +222,19 @@ class MachiningCollector:
             zero_mm=self._zero_mm(),
         )
 
-
-def _cuts_nothing(tool: int) -> str:
-    if tool == 0:
+    def _cuts_nothing(self, tool: int) -> str:
+        if tool == 0:
+            return (
+                "no tool is in the spindle in some cuts: nothing is removed there; program T and M6 before them,"
+                " or say the one that is there in a comment like (T1 D=10)"
+            )
+        if not self._lathe and isinstance(turning_tools_of(self._config, self.texts).get(tool), Insert):
+            return (
+                f"tool {tool} turns, and '{self._config.name}' has a Y axis: it cuts nothing here; run the program"
+                " on a lathe, like --machine lathe2"
+            )
+        shape = f"(T{tool} CNMG120408)" if self._lathe else f"(T{tool} D=10)"
         return (
-            "no tool is in the spindle in some cuts: nothing is removed there; program T and M6 before them,"
-            " or say the one that is there in a comment like (T1 D=10)"
+            f"the shape of tool {tool} is not known: it cuts nothing here; a comment like {shape}"
+            " or [tools] of the machine file tells it"
         )
-    return (
-        f"the shape of tool {tool} is not known: it cuts nothing here; a comment like (T{tool} D=10)"
-        " or [tools] of the machine file tells it"
-    )
