@@ -70,6 +70,7 @@ class MachiningCollector:
         self._said = ""  # about the form
         self._notes: list[str] = []
         self._came_down = False
+        self._last_place: Floats | None = None
 
     def add(self, rows: Floats, tags: npt.NDArray[np.int64], records: BlockRecords) -> None:
         """Take a piece of the record."""
@@ -112,7 +113,9 @@ class MachiningCollector:
         down = np.flatnonzero(height[1:] < height[:-1])
         self._came_down = len(down) > 0
         first = int(down[0]) + 1 if len(down) else len(tool)
-        still = np.concatenate(([True], np.all(place[1:] == place[:-1], axis=1)))
+        before = place[:1] if self._last_place is None else self._last_place
+        self._last_place = place[-1:].copy()
+        still = np.all(np.concatenate((before, place[:-1])) == place, axis=1)
         return np.where((rapid | still) & (np.arange(len(tool)) < first), _NOWHERE, tool)
 
     def _with_hand_tool(
