@@ -3,11 +3,11 @@
 (Positions are those of the axes: the centre of A and C is machine zero, and no transformation is active.)
 (Run it with --machine mill5)
 N10 G17 G21 G90 G94
+
+(Six pockets: tilt once, then turn the table by 60 degrees for each)
 N20 T1 M6 (T1 D=8 flat end mill)
 N30 S12000 M3
 N40 G0 X0 Y0 Z80 A0 C0
-
-(Six pockets: tilt once, then turn the table by 60 degrees for each)
 N50 G0 A-35
 N60 M98 P200 L6
 N70 G0 Z80

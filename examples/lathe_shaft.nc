@@ -3,21 +3,21 @@
 (X is the distance from the turning centre, not the diameter; zero is the middle of the finished face.)
 (Run it with --machine lathe2)
 N10 G18 G21 G90
+
+(Roughing, 0.4 mm left in X and 0.2 mm in Z)
 N20 T1 M6 (T1 CNMG120408 roughing)
 N30 G96 S180 M4 M8
 N40 G0 X16 Z2
-
-(Roughing, 0.4 mm left in X and 0.2 mm in Z)
 N50 G95 G0 X13
 N60 G1 Z-59.8 F0.25
 N70 X15.5
 N80 G0 Z2
 N90 X11.2
-N100 G1 Z-34.8
+N100 G1 Z-33.8
 N110 X13.5
 N120 G0 Z2
 N130 X9.4
-N140 G1 Z-34.8
+N140 G1 Z-32.8
 N150 X12
 N160 G0 Z2
 

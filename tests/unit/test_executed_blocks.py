@@ -104,6 +104,7 @@ def test_of_a_record_without_blocks_its_lines_are_known() -> None:
         (["(rough)", "; fine", "X5 ; not alone", "X7 (nor this)"], "fine"),
         (["N10 (with number)", "()", "X2(2)"], "with number"),
         (["X5 (a)", "Y3 ; b"], ""),
+        (["(slots)", "(T3 flat 6 mm)", "(T4 drill 5 mm)"], "T3 flat 6 mm"),
         ([*(f"X{n} (no)" for n in range(40)), "(late)", *(f"Y{n}" for n in range(40))], "late"),
     ],
 )

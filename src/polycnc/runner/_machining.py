@@ -70,6 +70,7 @@ class MachiningCollector:
         self._said = ""  # about the form
         self._notes: list[str] = []
         self._came_down = False
+        self._last_place: Floats | None = None
 
     def add(self, rows: Floats, tags: npt.NDArray[np.int64], records: BlockRecords) -> None:
         """Take a piece of the record."""
@@ -112,7 +113,9 @@ class MachiningCollector:
         down = np.flatnonzero(height[1:] < height[:-1])
         self._came_down = len(down) > 0
         first = int(down[0]) + 1 if len(down) else len(tool)
-        still = np.concatenate(([True], np.all(place[1:] == place[:-1], axis=1)))
+        before = place[:1] if self._last_place is None else self._last_place
+        self._last_place = place[-1:].copy()
+        still = np.all(np.concatenate((before, place[:-1])) == place, axis=1)
         return np.where((rapid | still) & (np.arange(len(tool)) < first), _NOWHERE, tool)
 
     def _with_hand_tool(
@@ -214,7 +217,7 @@ class MachiningCollector:
             messages=[
                 f"stock: {stock}, {stock.cell_mm:g} mm a cell{self._said}",
                 *self._notes,
-                *map(_cuts_nothing, sorted(tally.unknown_tools)),
+                *map(self._cuts_nothing, sorted(tally.unknown_tools)),
             ],
             form=form,
             course=course,
@@ -222,14 +225,19 @@ class MachiningCollector:
             zero_mm=self._zero_mm(),
         )
 
-
-def _cuts_nothing(tool: int) -> str:
-    if tool == 0:
+    def _cuts_nothing(self, tool: int) -> str:
+        if tool == 0:
+            return (
+                "no tool is in the spindle in some cuts: nothing is removed there; program T and M6 before them,"
+                " or say the one that is there in a comment like (T1 D=10)"
+            )
+        if not self._lathe and isinstance(turning_tools_of(self._config, self.texts).get(tool), Insert):
+            return (
+                f"tool {tool} turns, and '{self._config.name}' has a Y axis: it cuts nothing here; run the program"
+                " on a lathe, like --machine lathe2"
+            )
+        shape = f"(T{tool} CNMG120408)" if self._lathe else f"(T{tool} D=10)"
         return (
-            "no tool is in the spindle in some cuts: nothing is removed there; program T and M6 before them,"
-            " or say the one that is there in a comment like (T1 D=10)"
+            f"the shape of tool {tool} is not known: it cuts nothing here; a comment like {shape}"
+            " or [tools] of the machine file tells it"
         )
-    return (
-        f"the shape of tool {tool} is not known: it cuts nothing here; a comment like (T{tool} D=10)"
-        " or [tools] of the machine file tells it"
-    )

@@ -8,6 +8,7 @@ from itertools import pairwise
 
 from polycnc.cnc import ToolTime
 from polycnc.nc import ProgramText
+from polycnc.stock import tool_number
 
 _ALONE = re.compile(rb"[ \t]*(?:/?[Nn][0-9]+[ \t]*)?(?:\(([^)\r\n]*)\)|;([^\r\n]*))[ \t]*")
 
@@ -54,7 +55,7 @@ class OperationCollector:
         `tool` is in the spindle after it, `moved` are the times of the path so far.
         """
         offset = self.text.line_start(line)
-        name = self._remark(self._behind, offset) if offset > self._behind else ""
+        name = self._remark(self._behind, offset, tool) if offset > self._behind else ""
         self._behind = max(self._behind, offset)
         if not self._marks or changes_tool or name:
             self._marks.append(_Mark(line, name, tool, time_s, moved))
@@ -86,15 +87,15 @@ class OperationCollector:
             begin, name = None, ""
         return found
 
-    def _remark(self, begin: int, end: int) -> str:
-        """Return the last remark that stands alone in a line between two offsets."""
+    def _remark(self, begin: int, end: int, tool: int) -> str:
+        """Return the last remark that stands alone in a line between two offsets and is about no other tool."""
         content = self.text.content
         places = {sign: content.rfind(sign, begin, end) for sign in (b"(", b";")}
         while (at := max(places.values())) >= 0:
             start = content.rfind(b"\n", begin, at) + 1 or begin
             if found := _ALONE.fullmatch(content, start, self.text.line_end(start)):
                 remark = (found[1] or found[2] or b"").decode("utf-8", "replace").strip()
-                if remark:
+                if remark and not (tool and tool_number(remark) not in (None, tool)):
                     return remark
             for sign, place in places.items():
                 if place >= start:

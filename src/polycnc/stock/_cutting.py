@@ -12,10 +12,10 @@ from polycnc.stock._contacts import Contact, ContactKind, Idle
 from polycnc.stock._rows import Rows
 from polycnc.stock._stock import Stock
 from polycnc.stock._sweep import AT_X, AT_Y, DEPTH_MM, FIGURES, VOLUME_MM3, sweep
-from polycnc.stock._tally import Tally
+from polycnc.stock._tally import NEAR_CELLS, Tally
 from polycnc.stock._target import Target
 from polycnc.stock._tool import Tool, ToolKind
-from polycnc.stock._ways import Ways, WaysOfRows, runs
+from polycnc.stock._ways import Ways, WaysOfRows
 
 Floats = npt.NDArray[np.float64]
 Integers = npt.NDArray[np.int64]
@@ -26,8 +26,6 @@ RIM_SHARE = 0.5
 """How much narrower bodies are that must not touch, as a part of a cell: a tool leaves the wall that it has cut."""
 LEAST_DEPTH_SHARE = 0.5
 """How deep something must be in the material to count as a collision, as a part of a cell."""
-IDLE_S = 3.0
-"""How long a block feeds through air before that is remarked."""
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -159,7 +157,7 @@ class Cutting:
             turns = np.sign(ways.rows.turns[ways.ends].astype(np.float64))
             self._note(ContactKind.SPINDLE, ways, cut, least, turns == 0)
             self._note(ContactKind.DIRECTION, ways, cut, least, turns == (1 if tool.left_hand else -1))
-            self._note_idle(ways, cut, outlines)
+            self.tally.count_idle(ways, cut, lambda first, last: self._is_near(ways, outlines, first, last))
 
     def _note_walls(self, ways: Ways, cut: Floats, outlines: _Outlines, flute_mm: float) -> None:
         """Note where a tool cuts beside walls that rise above its flutes, level by level or peck by peck."""
@@ -190,26 +188,9 @@ class Cutting:
                 Contact(kind, int(ways.rows.block[row]), float(ways.rows.t_s[row]), place, depth)
             )
 
-    def _note_idle(self, ways: Ways, cut: Floats, outlines: _Outlines) -> None:
-        """Count the time of feeding that removes nothing, and note blocks that feed through air for long.
-
-        A tool that follows what it has cut is not in the air: it would cut if it were two cells lower.
-        """
-        moves = np.any(ways.places[1:] != ways.places[:-1], axis=1)
-        duration = np.where(moves & (cut[:, VOLUME_MM3] <= 0.0), ways.duration_s, 0.0)
-        self.tally.idle_s += float(duration.sum())
-        block = ways.block
-        for first, last in runs(block):
-            if cut[first:last, VOLUME_MM3].any() or duration[first:last].sum() < IDLE_S:
-                continue
-            lower = ways.places[first : last + 1] - (0.0, 0.0, 2.0 * self.stock.cell_mm)
-            touched = np.zeros((last - first, FIGURES))
-            sweep(
-                self.stock.grid, np.ascontiguousarray(lower), outlines.none, outlines.core, touched, touched
-            )
-            if not touched[:, DEPTH_MM].any():
-                x, y, z = ways.places[last].tolist()
-                t_s = float(ways.rows.t_s[ways.begins[first]])
-                self.tally.idle.append(
-                    Idle(int(block[first]), t_s, float(duration[first:last].sum()), (x, y, z))
-                )
+    def _is_near(self, ways: Ways, outlines: _Outlines, first: int, last: int) -> bool:
+        """Tell whether a tool would cut if it were a little lower."""
+        lower = ways.places[first : last + 1] - (0.0, 0.0, NEAR_CELLS * self.stock.cell_mm)
+        met = np.zeros((last - first, FIGURES))
+        sweep(self.stock.grid, np.ascontiguousarray(lower), outlines.none, outlines.core, met, met)
+        return bool(met[:, DEPTH_MM].any())

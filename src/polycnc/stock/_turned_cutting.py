@@ -11,8 +11,8 @@ from polycnc.stock._contacts import Contact, ContactKind
 from polycnc.stock._cutting import CHORD_SHARE
 from polycnc.stock._profile import COLUMNS
 from polycnc.stock._rows import Rows
-from polycnc.stock._sweep import AT_X, AT_Y, DEPTH_MM, VOLUME_MM3
-from polycnc.stock._tally import Tally
+from polycnc.stock._sweep import AT_X, AT_Y, DEPTH_MM
+from polycnc.stock._tally import NEAR_CELLS, Tally
 from polycnc.stock._tool import Tool
 from polycnc.stock._voxel_sweep import AT_Z, VOXEL_FIGURES, sweep_voxels
 from polycnc.stock._voxels import Voxels
@@ -78,8 +78,18 @@ class TurnedCutting:
                 (ContactKind.DIRECTION, turns < 0.0 if not tool.left_hand else turns > 0.0),
             ):
                 self._note(kind, ways, np.where(wrong[:, None], cut, 0.0), 0.0)
-            moves = np.any(ways.places[1:] != ways.places[:-1], axis=1) & (cut[:, VOLUME_MM3] <= 0.0)
-            self.tally.idle_s += float(ways.duration_s[moves].sum())
+            self.tally.count_idle(
+                ways, cut, lambda first, last: self._is_near(ways, outline.rows, tops, height, first, last)
+            )
+
+    def _is_near(
+        self, ways: Ways, outline: Floats, tops: Floats, height_mm: float, first: int, last: int
+    ) -> bool:
+        """Tell whether a tool would cut if it were a little lower along its axis."""
+        axes = ways.axes[first : last + 1]
+        lower = ways.places[first : last + 1, :3] - NEAR_CELLS * self.stock.cell_mm * axes
+        met = self._swept(lower, axes, outline, 0.0, height_mm, cuts=False, tops=tops)
+        return bool(met[:, DEPTH_MM].any())
 
     def _figures(
         self,
@@ -91,15 +101,27 @@ class TurnedCutting:
         cuts: bool,
         tops: Floats = _NOTHING,
     ) -> Floats:
-        found, stock = np.zeros((len(ways.ends), VOXEL_FIGURES)), self.stock
-        tips = np.ascontiguousarray(ways.places[:, :3])
-        axes = np.ascontiguousarray(ways.axes)
+        places = ways.places[:, :3]
+        return self._swept(places, ways.axes, outline, from_mm, height_mm, cuts=cuts, tops=tops)
+
+    def _swept(
+        self,
+        places: Floats,
+        axes: Floats,
+        outline: Floats,
+        from_mm: float,
+        height_mm: float,
+        *,
+        cuts: bool,
+        tops: Floats,
+    ) -> Floats:
+        found, stock = np.zeros((len(places) - 1, VOXEL_FIGURES)), self.stock
         sweep_voxels(
             stock.cells,
             stock.first,
             stock.cell_mm,
-            tips,
-            axes,
+            np.ascontiguousarray(places),
+            np.ascontiguousarray(axes),
             outline,
             tops,
             from_mm,

@@ -15,7 +15,7 @@ from polycnc.stock._insert import Insert, InsertKind
 from polycnc.stock._insert_sweep import sweep_insert
 from polycnc.stock._rows import Rows
 from polycnc.stock._sweep import AT_X, AT_Y, DEPTH_MM, FIGURES, VOLUME_MM3
-from polycnc.stock._tally import Tally
+from polycnc.stock._tally import NEAR_CELLS, Tally
 from polycnc.stock._tool import Tool
 from polycnc.stock._turned import Turned
 from polycnc.stock._ways import Ways, WaysOfRows, runs
@@ -73,8 +73,16 @@ class TurningCutting:
             self._note(ContactKind.SPINDLE, ways, figures, least, turns == 0.0)
             if insert.left_hand:
                 self._note(ContactKind.DIRECTION, ways, figures, least, turns > 0.0)
-            moves = np.any(ways.places[1:] != ways.places[:-1], axis=1) & (figures[:, VOLUME_MM3] <= 0.0)
-            self.tally.idle_s += float(ways.duration_s[moves].sum())
+            self.tally.count_idle(
+                ways, figures, lambda first, last: self._is_near(insert, outline, places[first : last + 1])
+            )
+
+    def _is_near(self, insert: Insert, outline: Floats, places: Floats) -> bool:
+        """Tell whether a tool would cut if it were a little lower, or beside where it is."""
+        found, near = np.zeros((len(places) - 1, FIGURES)), NEAR_CELLS * self.stock.cell_mm
+        for shift in ((-near, 0.0), (0.0, -near), (0.0, near)):
+            self._sweep(insert, outline, places[:-1] + shift, places[1:] + shift, found)
+        return bool(found[:, DEPTH_MM].any())
 
     def _held(self, insert: Insert, places: Floats) -> Floats:
         """Return how deep what holds a tool gets: it is taken to be as wide as the tool, and a cell on both sides."""
@@ -158,6 +166,15 @@ class TurningCutting:
             self._note(ContactKind.SPINDLE, ways, figures, least, turns == 0.0)
             wrong = turns > 0.0 if tool.left_hand else turns < 0.0
             self._note(ContactKind.DIRECTION, ways, figures, least, wrong)
+            self.tally.count_idle(
+                ways, figures, lambda first, last: self._bores_near(ways.places[first : last + 1], tool)
+            )
+
+    def _bores_near(self, places: Floats, tool: Tool) -> bool:
+        """Tell whether a drill would cut if it went a little farther."""
+        lowest = min((min(a[2], b[2]) for a, b in self._on_axis(places)), default=math.inf)
+        below = self.stock.z >= lowest - NEAR_CELLS * self.stock.cell_mm
+        return bool(np.any(below & (self.stock.inner < np.minimum(self.stock.outer, tool.radius_mm))))
 
     @staticmethod
     def _on_axis(places: Floats) -> Iterator[tuple[Floats, Floats]]:

@@ -327,3 +327,14 @@ def test_an_insert_of_the_machine_file_that_cannot_be_is_refused() -> None:
         config = parse_machine(f"{preset_text('lathe2')}\n[tools.7]\n{lines}\n", "m.toml")
         with pytest.raises(UsageError, match=f"tool 7 of 'lathe2'.*{wrong}"):
             runner.run(SHAFT, config, "fanuc-lathe", stock="cylinder=30,-60,0", check=False)
+
+
+def test_a_feed_in_the_air_is_not_one_along_what_was_cut() -> None:
+    """Back along the cone and out of the bore the tool touches what it has cut; further out it is in the air."""
+    text = (
+        "(T1 CNMG120408) (T5 drill 8 mm)\nT0101\nG98 G97 S800 M3\nG0 X26 Z2\nG1 X26 Z-9 F200\nZ2\nZ40\n"
+        "G0 X60 Z50\nT0505\nG0 X0 Z3\nG1 Z-9 F100\nZ3\nZ30\nG0 Z50\nM30\n"
+    )
+    found = runner.run(text, "lathe2", "fanuc-lathe", stock="cylinder=30,-60,0", check=False).machined
+    assert found is not None
+    assert [(each.line, each.place[2]) for each in found.idle] == [(7, 40.0), (13, 30.0)]

@@ -117,7 +117,8 @@ G0 Z80
 C120
 Z30
 G1 Z12
-G0 Z80
+G0 Z30
+G1 Z80
 M30
 """
 
@@ -132,6 +133,7 @@ def test_a_table_that_turns_shows_its_sides_to_the_tool() -> None:
     exact = 2.0 * float(np.sum(2.0 * np.sqrt(9.0 - y**2) * (np.sqrt(400.0 - y**2) - 12.0)) * 6.0 / 2000)
     assert found.removed_mm3 == pytest.approx(exact, rel=0.03)
     assert found.collisions == []
+    assert [each.line for each in found.machined.idle] == [12]
     lines = {found.machined.blocks[n].line for n in np.flatnonzero(found.machined.removed_mm3).tolist()}
     assert lines == {6, 10}
     wrong = runner.run(

@@ -21,7 +21,8 @@ function text(words, colour, height_px) {
 // `box` is what is cut, `names` the axes of the picture, `unit` {factor, name}; `lathe` draws the axis of the spindle.
 export function floor(box, names, unit, lathe) {
   const group = new Group(), all = [], labels = [], numbers = [], sizes = box.map(([low, high]) => high - low), longest = Math.max(...sizes, 1e-3);
-  const add = (lines, colour) => { lines.paint(() => rgb(colour)); lines.paper(css("--paper")); group.add(lines.mesh); all.push(lines); };
+  const add = (lines, colour) => { lines.paint(() => rgb(colour)); lines.paper(css("--paper")); group.add(lines.mesh); all.push(lines); return lines; };
+  const through = (lines) => { lines.material.depthTest = false; }; // seen through the part, as its letters are
   const label = (words, colour, at, height) => { const sprite = text(words, colour, height); sprite.position.set(...at); group.add(sprite); labels.push(sprite); return sprite; };
   const big = 0.045 * longest, step = round125(longest * unit.factor / 8) / unit.factor;
   const up = lathe ? 1 : 2, [p, q] = lathe ? [0, 2] : [0, 1];
@@ -34,13 +35,13 @@ export function floor(box, names, unit, lathe) {
   add(polyline(grid, { width: 1, order: -2 }), css("--grid"));
   const number = (mm) => String(Number((mm * unit.factor).toFixed(4)));
   for (let a = from[0]; a <= to[0] + 1e-9; a += step) numbers.push(Object.assign(label(number(a), css("--soft"), place(a, from[1] - 0.7 * big), 14), { value: a }));
-  for (let b = from[1]; b <= to[1] + 1e-9; b += step) numbers.push(Object.assign(label(number(lathe?.diameters ? 2 * Math.abs(b) : lathe ? Math.abs(b) : b), css("--soft"), place(from[0] - 1.1 * big, b), 14), { value: b }));
+  for (let b = from[1] + step; b <= to[1] + 1e-9; b += step) numbers.push(Object.assign(label(number(lathe?.diameters ? 2 * Math.abs(b) : lathe ? Math.abs(b) : b), css("--soft"), place(from[0] - 1.1 * big, b), 14), { value: b }));
   const arrow = 0.13 * longest;
   (lathe ? [[0, names[2]], [2, names[0]]] : [[0, names[0]], [1, names[1]], [2, names[2]]]).forEach(([i, name]) => {
     if (!name) return;
     const tip = [0, 0, 0]; tip[i] = arrow;
     const colour = AXES[lathe ? (i === 0 ? 2 : 0) : i];
-    add(polyline([[0, 0, 0], tip], { width: 2.5, order: 3 }), colour);
+    through(add(polyline([[0, 0, 0], tip], { width: 2.5, order: 7 }), colour));
     tip[i] = 1.25 * arrow;
     label(name, colour, tip, 22);
   });

@@ -40,7 +40,7 @@ void main() {
   bool within = all(greaterThan(cell_at, vec2(-0.49))) && all(lessThan(cell_at, size - 0.51));
   if (wall && base < 0.5 && within) { // a wall looks where its neighbourhood falls to, and has the colour of the later cut
     vec2 fall = vec2(0.0), corner = floor(cell_at);
-    for (int j = -1; j <= 2; j++) for (int i = -1; i <= 2; i++) {
+    for (int j = -2; j <= 3; j++) for (int i = -2; i <= 3; i++) {
       vec2 off = vec2(float(i), float(j));
       fall += (off - 0.5) * cellOf(corner + off).x;
     }
@@ -49,7 +49,7 @@ void main() {
   }
   vec3 toward = towardViewer();
   if ((!wall || base > 0.5 || !within) && dot(normal, toward) < 0.0) normal = -normal;
-  bool inside = (base > 0.5) ? gl_FrontFacing : !gl_FrontFacing;
+  bool inside = isCut() && ((base > 0.5) ? gl_FrontFacing : !gl_FrontFacing);
   gl_FragColor = inside ? INSIDE : shaded(colourOf(stamp), normal, toward);
 }`;
 
