@@ -121,7 +121,16 @@ class ServedMachine:
             MachineError: The machine's time cannot pass any more.
             PolycncError: What `question` raises.
         """
-        answer: asyncio.Future[R | PolycncError] = asyncio.get_running_loop().create_future()
+        return self.ask_at_once(question)
+
+    def ask_at_once(self, question: Callable[[], R]) -> R:
+        """Do what `ask` does, for those who cannot wait.
+
+        Raises:
+            MachineError: The machine's time cannot pass any more.
+            PolycncError: What `question` raises.
+        """
+        found: list[R | PolycncError] = []
 
         def asked() -> R | PolycncError:
             try:
@@ -129,13 +138,9 @@ class ServedMachine:
             except PolycncError as error:
                 return error
 
-        def done(result: R | PolycncError) -> None:
-            if not answer.done():
-                answer.set_result(result)
-
-        if not self.keeper.submit(asked, done):
+        if not self.keeper.submit(asked, found.append):
             raise MachineError(f"machine {self.name} has failed", hint="Start the server anew.")
-        result = await answer
+        result = found[0]
         if isinstance(result, PolycncError):
             raise result
         return result
