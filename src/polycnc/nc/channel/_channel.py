@@ -69,8 +69,11 @@ class Channel:
         self.dialect, self.machine, self.path = dialect, machine, path
         self.on_filled: Callable[[], None] | None = None  # looks at the queue before it is executed
         self.suppressed = Suppressed()
-        text_rules = dialect.text_rules()
-        rules = scan_rules(text_rules)
+        if before is not None and before.dialect is dialect:
+            self._rules = before._rules
+        else:
+            self._rules = dialect.text_rules(), scan_rules(dialect.text_rules())
+        text_rules, rules = self._rules
         prepared = self._prepared = Prepared(
             dialect,
             rules,

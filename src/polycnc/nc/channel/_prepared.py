@@ -18,7 +18,7 @@ from polycnc.nc.channel._options import ChannelOptions
 from polycnc.nc.dialect._dialect import Dialect
 from polycnc.nc.fast._carried import NONE, Carried
 from polycnc.nc.fast._plain_blocks import RESERVE, run_plain
-from polycnc.nc.fast._work import begin_run, carried_by, carry, events_made, make_fast_work, marked
+from polycnc.nc.fast._work import begin_run, carried_by, carry, events_made, make_fast_work, marked, with_room
 from polycnc.nc.modal._modal import ORDINARY
 from polycnc.nc.records._block_records import BlockRecords, Call
 from polycnc.nc.records._replay import Feeds, RunBegin, coolant_after
@@ -27,6 +27,7 @@ from polycnc.nc.text._scan import ScanRules, WordColumns
 
 _LOOKED_AT = 8
 CHUNK_BLOCKS = 1 << 14  # blocks of a text that are scanned, and prepared by the compiled kernel, together
+LEAST_BLOCKS = 1 << 8  # that there is room for, however short a text is
 
 
 class Prepared:
@@ -53,7 +54,11 @@ class Prepared:
         self._kernel = kernel
         self.row = kernel.paths.row[path]
         self._path = path
-        self._tables = dialect.tables()
+        self._dialect = dialect
+        if before is not None and before._dialect is dialect:
+            self._tables = before._tables
+        else:
+            self._tables = dialect.tables()
         if before is None:
             self.writer = QueueWriter(kernel.seg, kernel.paths, kernel.limits, path)
             self.records = BlockRecords(
@@ -70,7 +75,7 @@ class Prepared:
         self._fast_work = make_fast_work(
             self.state.modal,
             self._tables,
-            CHUNK_BLOCKS,
+            LEAST_BLOCKS,
             marks=options.marks,
             feed_needs_point=dialect.numbers.feed_least_input > 0.0,
             machine=config,
@@ -124,6 +129,7 @@ class Prepared:
         base = self.records.run_base(text, calls, self.state.snapshot(), begin)
         kernel = self._kernel
         before = self._carried()
+        self._fast_work = with_room(self._fast_work, after - first)
         carry(self._fast_work, before)
         spindle = self.state.spindle
         plain = self._functions_are_plain and not (spindle.surface_speed or spindle.oriented)
