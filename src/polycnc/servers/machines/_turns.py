@@ -35,8 +35,9 @@ class Turns:
         return self.next_s(now_s, now_s + _TICK_S * (self._begun % ticks))
 
     def next_s(self, now_s: float, due_s: float) -> float:
-        """Return the tick at which a beat comes that is due at this time, by the event loop, or has been since."""
-        return math.ceil(max(now_s, due_s) / _TICK_S - _HARDLY) * _TICK_S
+        """Return the tick after now, by the event loop, at which a beat comes that is due at this time."""
+        ticks = math.ceil(due_s / _TICK_S - _HARDLY)
+        return max(ticks, math.floor(now_s / _TICK_S + _HARDLY) + 1) * _TICK_S
 
     def wait(self, beat: Callable[[], None]) -> None:
         """Carry out `beat` when it has its turn."""
