@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import asyncio
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -153,7 +152,7 @@ class ServedMachine:
 
 def machines_of_path(machines: Iterable[ServedMachine], path: str) -> list[ServedMachine]:
     """Return the machines that a path of a URL names; all, if it names none."""
-    names, every = set(path.split("/")), list(machines)
+    names, every = path.split("/"), list(machines)
     return [each for each in every if each.name in names] or every
 
 
