@@ -15,7 +15,7 @@ from polycnc.nc.blocks._moves import Feed, Line
 from polycnc.nc.blocks._queue import QueueWriter
 from polycnc.nc.channel._first_state import first_state
 from polycnc.nc.channel._options import ChannelOptions
-from polycnc.nc.dialect._dialect import Dialect
+from polycnc.nc.dialect._dialect import Dialect, DialectTables
 from polycnc.nc.fast._carried import NONE, Carried
 from polycnc.nc.fast._plain_blocks import RESERVE, run_plain
 from polycnc.nc.fast._work import begin_run, carried_by, carry, events_made, make_fast_work, marked, with_room
@@ -36,6 +36,8 @@ class Prepared:
     `before` is what has been prepared for the path until now: queue and records go on, and with `keeps_modal` the modal
     state. `row` is the path in the kernel. `axes` are the names of the machine's axes in programs.
     """
+
+    _tables: DialectTables
 
     def __init__(
         self,

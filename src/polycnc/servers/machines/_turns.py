@@ -32,7 +32,7 @@ class Turns:
         """Return when the first beat of one more machine is due: those that begin together take turns."""
         ticks = max(1, round(beat_s / _TICK_S))
         self._begun += 1
-        return self.next_s(now_s, now_s + _TICK_S * (self._begun % ticks))
+        return self.next_s(now_s, now_s + _TICK_S * (1 + self._begun % ticks))
 
     def next_s(self, now_s: float, due_s: float) -> float:
         """Return the tick after now, by the event loop, at which a beat comes that is due at this time."""
