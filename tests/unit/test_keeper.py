@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import asyncio
+import selectors
+from collections import Counter
 from collections.abc import Callable
 from dataclasses import dataclass, field
 
@@ -33,6 +35,7 @@ class Slow:
     clock: Clock = field(default_factory=lambda: Clock(CYCLE_S))
     cost_s: float = COST_S
     passed: list[int] = field(default_factory=list)
+    at_s: list[float] = field(default_factory=list)
     is_followed: bool = True
 
     def advance(self, cycles: int, *, is_enough: Callable[[], bool] | None = None) -> int:
@@ -41,6 +44,7 @@ class Slow:
             cycles = 1
         self.clock.cycles += cycles
         self.passed.append(cycles)
+        self.at_s.append(self.wall.time_s)
         return cycles
 
 
@@ -128,3 +132,77 @@ def test_a_clock_that_cannot_keep_up_tells_what_it_drops() -> None:
 
     asyncio.run(run())
     assert all(lag >= 0.5 for lag in lags)
+
+
+class _Waits(selectors.SelectSelector):
+    """Waits that pass at once: `loop` is told how long they would have been."""
+
+    def __init__(self, wall: Wall) -> None:
+        super().__init__()
+        self._wall = wall
+        self.wakes = 0
+
+    def select(self, timeout: float | None = None) -> list[tuple[selectors.SelectorKey, int]]:
+        if timeout:
+            self._wall.time_s += timeout
+            self.wakes += 1
+        return super().select(0)
+
+
+class _AtOnce(asyncio.SelectorEventLoop):
+    """An event loop in which time passes only where everybody waits."""
+
+    def __init__(self, wall: Wall) -> None:
+        self.waits = _Waits(wall)
+        self._wall = wall
+        super().__init__(self.waits)
+
+    def time(self) -> float:
+        return self._wall.time_s
+
+
+def _lived(count: int, for_s: float, every_s: float = 0.0) -> tuple[list[Slow], int, float]:
+    """Let busy machines live that cost nothing; return them, the wakes, and the worst lateness."""
+    wall = Wall()
+    loop = _AtOnce(wall)
+    devices = [Slow(wall, busy=True, cost_s=0.0, is_followed=False) for _ in range(count)]
+
+    async def run() -> tuple[int, float]:
+        turns = Turns(wall)
+        keepers = [Keeper(each, wall, turns=turns) for each in devices]
+        for keeper in keepers:
+            keeper.start()
+        before, end_s = loop.waits.wakes, wall.time_s + for_s
+        while wall.time_s < end_s - 1e-6:
+            await asyncio.sleep(every_s or for_s)
+            for keeper in keepers if every_s else ():
+                keeper.submit(lambda: None, lambda _: None)
+        wakes = loop.waits.wakes - before
+        late_s = max(keeper.take_lateness_s() for keeper in keepers)
+        for keeper in keepers:
+            keeper.close()
+        return wakes, late_s
+
+    try:
+        return devices, *loop.run_until_complete(run())
+    finally:
+        loop.close()
+
+
+def test_many_machines_wake_the_process_no_oftener_than_one_with_as_many_beats() -> None:
+    for_s = 6.0
+    devices, wakes, late_s = _lived(40, for_s)
+    assert wakes <= for_s / 0.05 + 5
+    assert late_s < 1e-6
+    for device in devices:
+        assert for_s - 0.31 - 0.1 < device.clock.now_s <= for_s
+        assert len(device.passed) <= for_s / 0.3 + 1
+    at_once = Counter(round(at_s, 3) for each in devices for at_s in each.at_s)
+    assert max(at_once.values()) <= 40 / 6 + 1  # they take turns
+
+
+def test_a_machine_that_is_asked_needs_no_beats() -> None:
+    devices, _, _ = _lived(3, 3.1, every_s=0.11)
+    for device in devices:
+        assert abs(device.clock.now_s - 3.1) < 0.11 + 2 * CYCLE_S
+        assert len(device.passed) <= 3.1 / 0.11 + 2

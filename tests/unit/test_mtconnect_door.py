@@ -85,17 +85,23 @@ def served(names: dict[str, str]) -> list[ServedMachine]:
     return machines
 
 
-def test_a_machine_that_nobody_asks_for_a_minute_is_no_longer_followed() -> None:
-    async def visit(_: Any, machines: list[ServedMachine]) -> list[bool]:
+def test_a_machine_is_followed_while_it_is_young_and_for_a_minute_after_its_history_is_asked() -> None:
+    async def visit(app: Any, machines: list[ServedMachine]) -> list[bool]:
         (machine,) = machines
+        cycles_for = machine.served.clock.cycles_for
         found = [machine.served.is_followed]
-        minute = machine.served.clock.cycles_for(60.0)
-        machine.served.advance(minute - 1)
-        found.append(machine.served.is_followed)
-        machine.served.advance(1)
-        return [*found, machine.served.is_followed]
+        for cycles in (cycles_for(10.0) - 1, 1):
+            machine.served.advance(cycles)
+            found.append(machine.served.is_followed)
+        for path in ("/m/current", "/m/sample"):
+            await Asked(app, path, "").run()
+            found.append(machine.served.is_followed)
+        for cycles in (cycles_for(60.0) - 1, 1):
+            machine.served.advance(cycles)
+            found.append(machine.served.is_followed)
+        return found
 
-    assert with_door({"m": "plain"}, visit) == [True, True, False]
+    assert with_door({"m": "plain"}, visit) == [True, True, False, False, True, True, False]
 
 
 def with_door(names: dict[str, str], visit: Callable[[Any, list[ServedMachine]], Any]) -> Any:

@@ -163,6 +163,7 @@ async def serve_fleet(plan: Plan) -> None:
 async def serve_plan(plan: Plan, *, is_part: bool = False) -> None:
     """Serve what a plan says until a signal ends it; `is_part`: as one of several processes."""
     import asyncio
+    import gc
     import signal
 
     from polycnc import runner
@@ -184,7 +185,9 @@ async def serve_plan(plan: Plan, *, is_part: bool = False) -> None:
         else:
             _say_doors([(name, door.said) for name, door in serving.doors])
         await asyncio.sleep(0)  # whoever wants it to end already
+        gc.collect()
         await serving.begin()
+        gc.freeze()  # what has been made until now lasts: no collection goes through it again
         if is_part:
             part.begin(serving.machines)
         await serving.run()

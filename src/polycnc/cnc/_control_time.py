@@ -52,6 +52,7 @@ class ControlTime:
         self.watch: CycleWatch | None = None
         self.is_enough: Condition | None = None
         self._noted = [channel.run_state for channel in of.channels]
+        self._known: list[tuple[object, ...]] = []  # what the programs that are executed were found by
 
     def advance(self, cycles: int, *, until: int | Condition | None = None) -> int:
         """Let up to `cycles` control cycles pass; return how many did (see `Control.advance`)."""
@@ -166,7 +167,17 @@ class ControlTime:
 
     def note_running(self) -> None:
         """Let the program memory know which programs are executed."""
-        self._of.programs.running = frozenset().union(*(channel.programs for channel in self._of.channels))
+        known, self._known = (
+            self._known,
+            [
+                (channel.run_state, channel.returning, channel.executed, channel.run and channel.run.program)
+                for channel in self._of.channels
+            ],
+        )
+        if known != self._known:
+            self._of.programs.running = frozenset().union(
+                *(channel.programs for channel in self._of.channels)
+            )
 
     def _take_answers(self, channel: ControlChannel) -> None:
         if self._of.functions.take_answers(channel):

@@ -296,7 +296,7 @@ class Calls:
 
     def attach(self, host: object) -> None:
         """Let the language work for a channel."""
-        if isinstance(self._language, BoundLanguage):
+        if self._language is not None and isinstance(self._language, BoundLanguage):
             self._language.attach(host)
 
     def restore_point(self, host: object, saved: object) -> Callable[[], None]:

@@ -30,8 +30,8 @@ from polycnc.nc.modal._modal_snapshot import ModalSnapshot
 from polycnc.nc.modal._suppressed import Suppressed
 from polycnc.nc.records._block_records import BlockRecords, Call
 from polycnc.nc.sources._block_source import Language
-from polycnc.nc.text._program import ProgramText
-from polycnc.nc.text._scan import scan_rules
+from polycnc.nc.text._program import ProgramText, TextRules
+from polycnc.nc.text._scan import ScanRules, scan_rules
 
 
 class Channel:
@@ -46,6 +46,7 @@ class Channel:
     """
 
     _prepared: Prepared
+    _rules: tuple[TextRules, ScanRules]
 
     def __init__(
         self,
@@ -68,8 +69,7 @@ class Channel:
         self.dialect, self.machine, self.path = dialect, machine, path
         self.on_filled: Callable[[], None] | None = None  # looks at the queue before it is executed
         self.suppressed = Suppressed()
-        text_rules = dialect.text_rules()
-        rules = scan_rules(text_rules)
+        self._rules = text_rules, rules = before.rules_of(dialect) if before else _rules_of(dialect)
         prepared = self._prepared = Prepared(
             dialect,
             rules,
@@ -107,6 +107,10 @@ class Channel:
         if attaches:
             prepared.take_tolerance()
             calls.attach(self)
+
+    def rules_of(self, dialect: Dialect) -> tuple[TextRules, ScanRules]:
+        """Return the rules by which texts of a dialect are read; those of the channel's own are made already."""
+        return self._rules if dialect is self.dialect else _rules_of(dialect)
 
     # ------------------------------------------------------------------ how far it is
 
@@ -330,6 +334,11 @@ class Channel:
 
 
 # Nothing of a channel holds the whole of it: one that a program leaves behind goes at once, with its large arrays.
+
+
+def _rules_of(dialect: Dialect) -> tuple[TextRules, ScanRules]:
+    text_rules = dialect.text_rules()
+    return text_rules, scan_rules(text_rules)
 
 
 def _put_count(writer: QueueWriter) -> Callable[[], int]:

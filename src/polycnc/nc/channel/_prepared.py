@@ -14,10 +14,10 @@ from polycnc.nc.blocks._moves import Feed, Line
 from polycnc.nc.blocks._queue import QueueWriter
 from polycnc.nc.channel._first_state import first_state
 from polycnc.nc.channel._options import ChannelOptions
-from polycnc.nc.dialect._dialect import Dialect
+from polycnc.nc.dialect._dialect import Dialect, DialectTables
 from polycnc.nc.fast._carried import NONE, Carried
 from polycnc.nc.fast._plain_blocks import run_plain
-from polycnc.nc.fast._work import begin_run, carried_by, carry, events_made, make_fast_work, marked
+from polycnc.nc.fast._work import begin_run, carried_by, carry, events_made, make_fast_work, marked, with_room
 from polycnc.nc.modal._modal import ORDINARY
 from polycnc.nc.records._block_records import BlockRecords, Call
 from polycnc.nc.records._replay import Feeds, RunBegin, coolant_after
@@ -25,6 +25,7 @@ from polycnc.nc.text._program import ProgramText
 from polycnc.nc.text._scan import ScanRules, WordColumns
 
 CHUNK_BLOCKS = 1 << 14  # blocks of a text that are scanned, and prepared by the compiled kernel, together
+LEAST_BLOCKS = 1 << 8  # that there is room for, however short a text is
 
 
 class Prepared:
@@ -33,6 +34,8 @@ class Prepared:
     `before` is what has been prepared for the path until now: queue and records go on, and with `keeps_modal` the modal
     state. `row` is the path in the kernel. `axes` are the names of the machine's axes in programs.
     """
+
+    _tables: DialectTables
 
     def __init__(
         self,
@@ -51,7 +54,11 @@ class Prepared:
         self._kernel = kernel
         self.row = kernel.paths.row[path]
         self._path = path
-        self._tables = dialect.tables()
+        self._dialect = dialect
+        if before is not None and before._dialect is dialect:
+            self._tables = before._tables
+        else:
+            self._tables = dialect.tables()
         if before is None:
             self.writer = QueueWriter(kernel.seg, kernel.paths, kernel.limits, path)
             self.records = BlockRecords(
@@ -68,7 +75,7 @@ class Prepared:
         self._fast_work = make_fast_work(
             self.state.modal,
             self._tables,
-            CHUNK_BLOCKS,
+            LEAST_BLOCKS,
             marks=options.marks,
             feed_needs_point=dialect.numbers.feed_least_input > 0.0,
             machine=config,
@@ -107,6 +114,7 @@ class Prepared:
         base = self.records.run_base(text, calls, self.state.snapshot(), begin)
         kernel = self._kernel
         before = self._carried()
+        self._fast_work = with_room(self._fast_work, after - first)
         carry(self._fast_work, before)
         spindle = self.state.spindle
         plain = self._functions_are_plain and not (spindle.surface_speed or spindle.oriented)

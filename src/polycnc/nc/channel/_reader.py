@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from polycnc.nc.channel._open_words import OpenWords
-from polycnc.nc.channel._prepared import CHUNK_BLOCKS, Prepared
+from polycnc.nc.channel._prepared import CHUNK_BLOCKS, LEAST_BLOCKS, Prepared
 from polycnc.nc.channel._running import Running
 from polycnc.nc.records._block_records import Call
 from polycnc.nc.sources._block_source import EndSource, WordValues
@@ -23,7 +23,8 @@ from polycnc.nc.text._scan import (
 )
 from polycnc.nc.text._scan_plain import Block, Word, scan_block
 
-_JUMP_BLOCKS = 1 << 8  # scanned after a call or a return: sub-programs are short, and jumps many
+_JUMP_BLOCKS = LEAST_BLOCKS  # scanned after a call or a return: sub-programs are short, and jumps many
+_LEAST_BLOCK_BYTES = 2  # a letter and the end of its line
 _WORDS_ONLY = COMMENT | LABEL
 
 
@@ -43,9 +44,8 @@ class Reader:
         self.line = 0
         self.blocks = 0
         self.skip_levels = skip_levels
-        self._chunk = word_columns(CHUNK_BLOCKS)
         self._jump_chunk = word_columns(_JUMP_BLOCKS)
-        self._words = self._chunk
+        self._chunk = self._words = self._jump_chunk
         self._next = 0
         self._after = 0  # the last block of the piece
         self._text_rules = text_rules
@@ -70,8 +70,15 @@ class Reader:
         """Scan the next piece; False at the end."""
         if self.place.offset >= self.end:
             return False
-        self._scan(self._chunk)
+        self._scan(self._with_room())
         return True
+
+    def _with_room(self) -> WordColumns:
+        """Return columns for a whole piece; a text that is short needs no long ones."""
+        blocks = min(CHUNK_BLOCKS, (self.end - self.place.offset) // _LEAST_BLOCK_BYTES + 1)
+        if blocks > len(self._chunk.offset):
+            self._chunk = word_columns(1 << (blocks - 1).bit_length())  # for what is still coming, too
+        return self._chunk
 
     def jump(self, place: Place, end: int) -> None:
         """Go on at another place, up to byte `end` of its text."""

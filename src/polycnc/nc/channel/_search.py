@@ -37,7 +37,9 @@ class Search:
         self.held: SourceItem | None = None
         self._calls = calls
         self._reader = reader
-        self._language = language if isinstance(language, FastForwardLanguage) else None
+        self._language: FastForwardLanguage | None = None
+        if language is not None and isinstance(language, FastForwardLanguage):
+            self._language = language
         self._idle = 0
         self._before = (-1, -1)
 

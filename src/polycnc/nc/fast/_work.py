@@ -87,7 +87,7 @@ def make_fast_work(
     role[[_D, _H]] = LASTING
     if tables.selects:
         role[_T] = LASTING
-    if np.isin(tables.m_sense, (OUTPUT_BIT, OUTPUT_VALUE)).any():
+    if OUTPUT_BIT in tables.m_sense or OUTPUT_VALUE in tables.m_sense:
         role[[_P, _E, _Q]] = OUTPUT
     carried = np.full(CARRIED_COLUMNS, NONE)
     spindle, times = machine.spindle, machine.times
@@ -123,6 +123,17 @@ def make_fast_work(
         np.zeros(2 * blocks, np.int64),
         np.zeros(3),
         tables.m_sense,
+    )
+
+
+def with_room(work: FastWork, blocks: int) -> FastWork:
+    """Return the scratch with room for calls of so many blocks; the same where it has that already."""
+    if 2 * blocks <= len(work.events):
+        return work
+    return work._replace(
+        marks=np.zeros((blocks if len(work.marks) else 0, 2), np.int64),
+        events=np.zeros((2 * blocks, 3)),
+        event_tags=np.zeros(2 * blocks, np.int64),
     )
 
 

@@ -170,8 +170,9 @@ CHANGING = slice(0, 5)
 def _columns(axes: int) -> tuple[Ints, Floats, Floats, Floats, Floats]:
     """Return the columns that blocks may change, as parts of one array: so all are copied at once."""
     memory = np.zeros(WHOLE_COLUMNS + REAL_COLUMNS + 3 * axes)
-    whole, real, *vectors = np.split(memory, np.cumsum([WHOLE_COLUMNS, REAL_COLUMNS, axes, axes]))
-    return whole.view(np.int64), real, vectors[0], vectors[1], vectors[2]
+    begin = WHOLE_COLUMNS + REAL_COLUMNS
+    first, second, third = (memory[begin + k * axes : begin + (k + 1) * axes] for k in range(3))
+    return memory[:WHOLE_COLUMNS].view(np.int64), memory[WHOLE_COLUMNS:begin], first, second, third
 
 
 def changing(modal: Modal) -> Floats:

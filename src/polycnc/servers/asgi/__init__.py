@@ -2,5 +2,6 @@
 
 from polycnc.servers.asgi._connection import Refused, refused_in_text
 from polycnc.servers.asgi._door import AsgiDoor
+from polycnc.servers.asgi._repeated import Again, Said, again_of, answers_again
 
-__all__ = ["AsgiDoor", "Refused", "refused_in_text"]
+__all__ = ["Again", "AsgiDoor", "Refused", "Said", "again_of", "answers_again", "refused_in_text"]

@@ -11,7 +11,6 @@ from prometheus_client import CollectorRegistry, Counter, Gauge, generate_latest
 from starlette.exceptions import HTTPException
 from starlette.responses import FileResponse
 from starlette.routing import Match, Route
-from starlette.types import ASGIApp
 
 from polycnc import __version__
 from polycnc.errors import PolycncError
@@ -43,7 +42,7 @@ def make_app(
     token: str | None = None,
     log: Log | None = None,
     hosts: Iterable[str] = (),
-) -> ASGIApp:
+) -> Guard:
     """Return the application that serves these machines."""
     by_name = {each.name: each for each in machines}
     log = log or Log()

@@ -10,6 +10,7 @@ from urllib.parse import urlsplit
 
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
+from polycnc.servers.asgi import Again, Said, again_of, answers_again
 from polycnc.servers.http._problem import problem
 
 MOST_BODY_BYTES = 16 << 20
@@ -59,6 +60,29 @@ class Guard:
                 await problem(*refusal)(scope, receive, send)
             return
         await self._app(scope, _bounded(receive), self._with_headers(send))
+        if (again := again_of(scope)) is not None:
+            answers_again(scope, lambda: self._again(again))
+
+    async def warm(self) -> None:
+        """Ask for the health, unseen: the first question has the application get ready, which takes long."""
+        scope = {
+            "type": "http", "asgi": {"version": "3.0"}, "http_version": "1.1", "method": "GET", "scheme": "http",
+            "path": "/health", "raw_path": b"/health", "root_path": "", "query_string": b"", "headers": [],
+        }  # fmt: skip
+
+        async def receive() -> Message:
+            return {"type": "http.request"}
+
+        async def send(_: Message) -> None:
+            pass
+
+        await self._app(scope, receive, send)
+
+    def _again(self, again: Again) -> Said | None:
+        if (said := again()) is not None:
+            self._answered(200)
+            said.headers.extend(_CONTENT)
+        return said
 
     def _with_headers(self, send: Send) -> Send:
         async def sent(message: Message) -> None:

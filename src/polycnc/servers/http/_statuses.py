@@ -7,6 +7,7 @@ from collections.abc import Mapping
 from starlette.types import ASGIApp, Receive, Scope, Send
 
 from polycnc.errors import PolycncError
+from polycnc.servers.asgi import Said, answers_again
 from polycnc.servers.http._documents import status_json
 from polycnc.servers.http._lease import KEY_HEADER
 from polycnc.servers.http._problem import of_error
@@ -32,13 +33,26 @@ class Statuses:
             await self._app(scope, receive, send)
             return
         try:
-            shown = await machine.ask(lambda: status_json(machine))
+            said = _said(machine)
         except PolycncError as error:
             await of_error(error)(scope, receive, send)
             return
-        head = [(b"content-length", str(len(shown)).encode()), (b"content-type", b"application/json")]
-        await send({"type": "http.response.start", "status": 200, "headers": head})
-        await send({"type": "http.response.body", "body": shown})
+        answers_again(scope, lambda: _again(machine))
+        await send({"type": "http.response.start", "status": 200, "headers": said.headers})
+        await send({"type": "http.response.body", "body": said.body})
+
+
+def _said(machine: ServedMachine) -> Said:
+    shown = machine.ask_at_once(lambda: status_json(machine))
+    return Said([(b"content-length", b"%d" % len(shown)), (b"content-type", b"application/json")], shown)
+
+
+def _again(machine: ServedMachine) -> Said | None:
+    """Answer once more, unless a scenario wants something else or the machine has failed."""
+    try:
+        return _said(machine) if machine.is_usual else None
+    except PolycncError:
+        return None
 
 
 def _shows_key(scope: Scope) -> bool:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import asyncio
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -121,7 +120,16 @@ class ServedMachine:
             MachineError: The machine's time cannot pass any more.
             PolycncError: What `question` raises.
         """
-        answer: asyncio.Future[R | PolycncError] = asyncio.get_running_loop().create_future()
+        return self.ask_at_once(question)
+
+    def ask_at_once(self, question: Callable[[], R]) -> R:
+        """Do what `ask` does, for those who cannot wait.
+
+        Raises:
+            MachineError: The machine's time cannot pass any more.
+            PolycncError: What `question` raises.
+        """
+        found: list[R | PolycncError] = []
 
         def asked() -> R | PolycncError:
             try:
@@ -129,13 +137,9 @@ class ServedMachine:
             except PolycncError as error:
                 return error
 
-        def done(result: R | PolycncError) -> None:
-            if not answer.done():
-                answer.set_result(result)
-
-        if not self.keeper.submit(asked, done):
+        if not self.keeper.submit(asked, found.append):
             raise MachineError(f"machine {self.name} has failed", hint="Start the server anew.")
-        result = await answer
+        result = found[0]
         if isinstance(result, PolycncError):
             raise result
         return result
@@ -148,7 +152,7 @@ class ServedMachine:
 
 def machines_of_path(machines: Iterable[ServedMachine], path: str) -> list[ServedMachine]:
     """Return the machines that a path of a URL names; all, if it names none."""
-    names, every = set(path.split("/")), list(machines)
+    names, every = path.split("/"), list(machines)
     return [each for each in every if each.name in names] or every
 
 

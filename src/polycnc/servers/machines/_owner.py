@@ -100,6 +100,7 @@ class Keeper:
         self._timer: asyncio.TimerHandle | None = None
         self._due_s = math.inf  # when the next beat is planned, by the event loop
         self._latest_s = 0.0
+        self._asked_s = -math.inf  # when nothing was left to be done before a request
         self._rests_until_s = -math.inf
         self._has_changed = False
         self.pace.forget()
@@ -107,15 +108,16 @@ class Keeper:
     def start(self) -> None:
         """Let time pass from now on, without being asked; what has passed outside until now is not caught up with."""
         self.pace.forget()
-        self._beat()
+        beat_s = self._beat_s()
+        self._call_at(self._turns.first_s(asyncio.get_running_loop().time(), beat_s))
 
     def submit(self, command: Callable[[], R], done: Callable[[R], None]) -> bool:
         """Let time pass, carry out `command`, and tell its result at once; False if time cannot pass."""
         if self.failed.done():
             return False
         try:
-            if self._is_wanted():
-                self._catch_up()
+            if self._is_wanted() and not self._catch_up():
+                self._asked_s = self._wall.now_s()
             result = command()
         except Exception as error:
             self._fail(error)
@@ -168,24 +170,32 @@ class Keeper:
         return latest_s
 
     def _beat(self) -> None:
+        """Let pass what is due; where a request has done that meanwhile, the beat comes as long after it."""
+        now_s, beat_s = asyncio.get_running_loop().time(), self._beat_s()
+        since_s = self._wall.now_s() - self._asked_s
+        if since_s < beat_s and self._due_s <= now_s:
+            self._due_s = now_s - since_s
+            self._plan(now_s, beat_s)
+            return
         try:
             late = self._catch_up(whole=False)
         except Exception as error:
             self._fail(error)
             return
-        loop = asyncio.get_running_loop()
-        now_s = loop.time()
+        now_s = asyncio.get_running_loop().time()
         self._latest_s = max(self._latest_s, now_s - self._due_s)
         if late:
             self._due_s = min(self._due_s, now_s)
             self._turns.wait(self._beat)
         else:
-            self._plan(self._beat_s())
+            self._plan(now_s, self._beat_s())
 
-    def _plan(self, beat_s: float) -> None:
-        loop = asyncio.get_running_loop()
-        self._due_s = loop.time() + beat_s
-        self._timer = loop.call_later(beat_s, self._turns.wait, self._beat)
+    def _plan(self, now_s: float, beat_s: float) -> None:
+        self._call_at(self._turns.next_s(now_s, min(self._due_s, now_s) + beat_s))
+
+    def _call_at(self, due_s: float) -> None:
+        self._due_s = due_s
+        self._timer = asyncio.get_running_loop().call_at(due_s, self._turns.wait, self._beat)
 
     def _beat_s(self) -> float:
         if not self._served.busy:

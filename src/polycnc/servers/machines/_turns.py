@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 import asyncio
+import math
 from collections.abc import Callable
 
 from polycnc.machine import Wall
 
 _SHARE_S = 0.005  # for the beats together, and as much for the requests together
+_HARDLY = 1e-3  # of a tick
+_TICK_S = 0.05  # between two times at which beats are due: many machines wake the process no oftener than one
 
 
 class Turns:
@@ -23,6 +26,18 @@ class Turns:
         self._waiting: dict[Callable[[], None], None] = {}
         self._planned = False
         self._asked_until_s: float | None = None
+        self._begun = 0
+
+    def first_s(self, now_s: float, beat_s: float) -> float:
+        """Return when the first beat of one more machine is due: those that begin together take turns."""
+        ticks = max(1, round(beat_s / _TICK_S))
+        self._begun += 1
+        return self.next_s(now_s, now_s + _TICK_S * (1 + self._begun % ticks))
+
+    def next_s(self, now_s: float, due_s: float) -> float:
+        """Return the tick after now, by the event loop, at which a beat comes that is due at this time."""
+        ticks = math.ceil(due_s / _TICK_S - _HARDLY)
+        return max(ticks, math.floor(now_s / _TICK_S + _HARDLY) + 1) * _TICK_S
 
     def wait(self, beat: Callable[[], None]) -> None:
         """Carry out `beat` when it has its turn."""

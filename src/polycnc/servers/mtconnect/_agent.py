@@ -60,6 +60,7 @@ class Agent:
         self, devices: Sequence[DeviceModel], version: Version, instance: int, *, size: int = BUFFER_SIZE
     ) -> None:
         self.devices = tuple(devices)
+        self._numbers = {name: k for k, device in enumerate(devices) for name in (device.uuid, device.name)}
         self.buffer = Buffer(size)
         self._recorders = [Recorder(device) for device in devices]
         self._version = version
@@ -89,12 +90,12 @@ class Agent:
             raise AgentError(Code.NO_DEVICE, "there are devices of the type Device only")
         if not asked.device:
             return list(range(len(self.devices)))
-        found = [k for k, device in enumerate(self.devices) if asked.device in (device.name, device.uuid)]
-        if not found:
+        found = self._numbers.get(asked.device)
+        if found is None:
             raise AgentError(
                 Code.NO_DEVICE, f"there is no device {asked.device[:64]}", hint="See /probe for their names."
             )
-        return found
+        return [found]
 
     def answer(self, asked: Asked) -> Answer | StreamAsked:
         """Return what is asked; errors as a document are made by `refusal`.

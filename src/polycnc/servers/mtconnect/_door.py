@@ -11,7 +11,7 @@ from functools import partial
 from starlette.types import ASGIApp, Receive, Scope, Send
 
 from polycnc.errors import PolycncError
-from polycnc.servers.asgi import AsgiDoor, Refused
+from polycnc.servers.asgi import AsgiDoor, Refused, Said, answers_again
 from polycnc.servers.machines import (
     LOOPBACK,
     ServedMachine,
@@ -32,10 +32,14 @@ PORT = 5000
 _XML, _JSON = b"text/xml; charset=utf-8", b"application/json"
 _BOUNDARY = b"polycnc-a1f04c9b7d3e"
 _WANTED_S = 60.0  # of the machine's time, after which nobody seems to want to see what happens
+_YOUNG_S = 10.0  # in which a machine waits for the first who wants to
+_BACK = frozenset({"sample"})
+"""Requests for what was observed before they came; what is asked now is looked at now."""
 _LEAST_BEAT_S = 0.01  # between two pieces of a stream, whatever interval is asked for
 _MOST_STREAMS = 100
 _MOST_WAIT_S = 30.0  # for a client that does not read
 _METHODS = ("GET", "HEAD")
+_OK = 200
 _MOST_BODY_BYTES = 1 << 16
 
 
@@ -56,19 +60,25 @@ class Observed:
             machine.served.watch(look, look.is_wanted)
             self._looks.append(look)
 
-    async def look(self, asked: Asked) -> None:
+    def look(self, asked: Asked) -> None:
         """Let the machines that a request is about live up to now, and look at them.
 
         Raises:
             AgentError: There is no such device, or its time cannot pass any more.
         """
+        goes_back = asked.request in _BACK
         for number in self.agent.numbers(asked):
+            look = self._looks[number]
             try:
-                await self._machines[number].ask(self._looks[number].for_client)
+                self._machines[number].ask_at_once(look.for_history if goes_back else look)
             except AgentError:
                 raise
             except PolycncError as error:
                 raise AgentError(Code.INTERNAL_ERROR, error.what, hint=error.hint) from None
+
+    def are_usual(self, asked: Asked) -> bool:
+        """Tell whether no scenario has anything to do with a request."""
+        return all(self._machines[number].is_usual for number in self.agent.numbers(asked))
 
 
 class _Look:
@@ -81,14 +91,14 @@ class _Look:
         self._see = see(machine.find_control)
         self._clock = machine.served.clock
         self._most_cycles = self._clock.cycles_for(_WANTED_S)
-        self._asked = self._clock.cycles
+        self._asked = self._clock.cycles - self._most_cycles + self._clock.cycles_for(_YOUNG_S)
 
     def is_wanted(self) -> bool:
-        """Tell whether a client has asked in the last minute of the machine's time, or the machine is that young."""
+        """Tell whether a client asked for what had been in the last minute of the machine's time, or it is young."""
         return abs(self._clock.cycles - self._asked) < self._most_cycles
 
-    def for_client(self) -> None:
-        """Look, as a client asks."""
+    def for_history(self) -> None:
+        """Look, as a client asks who wants to see what happens until it asks again."""
         self._asked = self._clock.cycles
         self()
 
@@ -117,7 +127,7 @@ class App:
         try:
             self._check(scope)
             asked = asked_of(path, scope["query_string"])
-            await self._observed.look(asked)
+            self._observed.look(asked)
             answer = self._observed.agent.answer(asked)
             if isinstance(answer, StreamAsked) and self._streams >= _MOST_STREAMS:
                 raise AgentError(Code.TOO_MANY, f"{_MOST_STREAMS} streams are open", hint="End one.")
@@ -125,6 +135,8 @@ class App:
             answer = self._observed.agent.refusal(error, path)
         kind = _kind_of(scope)
         if isinstance(answer, Answer):
+            if answer.status == _OK:
+                answers_again(scope, lambda: self._again(asked, kind))
             await _send_document(send, answer, kind, closes=_body_bytes(scope) > _MOST_BODY_BYTES)
             return
         self._streams += 1
@@ -132,6 +144,20 @@ class App:
             await self._stream(asked, answer, kind, receive, send)
         finally:
             self._streams -= 1
+
+    def _again(self, asked: Asked, kind: bytes) -> Said | None:
+        """Answer once more what can be answered, unless a scenario wants something else."""
+        try:
+            if not self._observed.are_usual(asked):
+                return None
+            self._observed.look(asked)
+            answer = self._observed.agent.answer(asked)
+        except AgentError:
+            return None
+        if not isinstance(answer, Answer):
+            return None
+        document = _in_kind(answer, kind)
+        return Said(_headers(document, kind), document)
 
     def _check(self, scope: Scope) -> None:
         """Refuse what is asked by other methods, or by a name that is not that of this computer."""
@@ -167,7 +193,7 @@ class App:
             while not gone.done():
                 due = time.monotonic() - last >= stream.heartbeat_s
                 try:
-                    await self._observed.look(asked)
+                    self._observed.look(asked)
                     document, number = stream.next(number, due)
                 except AgentError as error:
                     document = self._observed.agent.refusal(error, f"/{asked.request}").document
@@ -226,8 +252,12 @@ def _headers(document: bytes, kind: bytes) -> list[tuple[bytes, bytes]]:
     ]  # fmt: skip
 
 
+def _in_kind(answer: Answer, kind: bytes) -> bytes:
+    return as_json(answer.document) if kind == _JSON else answer.document
+
+
 async def _send_document(send: Send, answer: Answer, kind: bytes, *, closes: bool) -> None:
-    document = as_json(answer.document) if kind == _JSON else answer.document
+    document = _in_kind(answer, kind)
     headers = _headers(document, kind)
     if closes:  # the rest of what the client sends is not read
         headers.append((b"connection", b"close"))

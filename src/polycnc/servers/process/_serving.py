@@ -106,6 +106,7 @@ class Serving:
         for machine in self.machines:
             await asyncio.sleep(0)  # whoever wants it to end does not wait for the others
             machine.served.advance(1)
+        for machine in self.machines:
             machine.keeper.start()
 
     async def start_programs(self) -> None:
