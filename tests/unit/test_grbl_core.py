@@ -71,6 +71,23 @@ WRONG = (
 )  # fmt: skip
 
 
+def test_what_is_refused_first_leaves_no_program_that_waits() -> None:
+    """Nor does what only asks: the operator's mode and the state of the control are as before."""
+    core = GrblCore(control := grbl_control(load_machine("mill3")))
+    for mode in (Mode.JOG, Mode.AUTO, Mode.MDI):
+        control.select_mode(mode)
+        for line in ("G99", "G1 X1", "G2 X20 Y5 I99 F100", "G80 X1", "$J=X1 F0", "$J=X1", "$G", "$#"):
+            core.receive(line.encode() + b"\n")
+            control.advance(2)
+            core.turn()
+            channel = control.channel_status()
+            assert (control.mode, channel.active, channel.motion) == (mode, False, "none"), line
+            assert core.state == "Idle", line
+    assert core.receive(b"G0 X7.5\n") == b"ok\r\n"
+    control.advance(500)
+    assert control.axes()["X"].machine == 7.5
+
+
 def test_a_wrong_line_has_its_number_and_stops_nothing() -> None:
     bench = Bench()
     bench.send(UNIT + "G10 L20 P2 X0\nG53 G0 X37.5\n", 500)
