@@ -179,7 +179,10 @@ def test_modal_words_and_parameters() -> None:
     bench = Bench()
     assert bench.send("$G\n") == ["[GC:G0 G54 G17 G21 G90 G94 M5 M9 T0 F0 S0]", "ok"]
     bench.send("G20 G91 G18 G55 G1 F20 S500 M3 M8 T2\n", 2000)
-    assert bench.send("$G\n") == ["[GC:G1 G55 G18 G20 G91 G94 M3 M8 T2 F20 S500]", "ok"]
+    assert bench.send("$G\n") == ["[GC:G1 G55 G18 G20 G91 G94 M3 M8 T2 F508 S500]", "ok"]
+    bench.send("$13=1\n")
+    assert "F20.0" in bench.send("$G\n")[0]
+    assert "F2000000" in bench.send("$13=0\nG21 F2000000\n$G\n")[-2], "senders read no exponents"
     bench.send("G21 G90 G92 X1\n", 50)
     found = bench.send("$#\n")
     assert found[0] == "[G54:0.000,0.000,0.000]"
