@@ -245,6 +245,7 @@ def test_the_page_operates_the_machine(size: tuple[int, int], served: Served, ch
     assert page.locator("#stop").bounding_box()["y"] < size[1]
     page.click("#stop")
     page.wait_for_selector("#alarms p")
+    assert page.evaluate("document.documentElement.scrollWidth") <= size[0]
     page.click("#stop")
     page.wait_for_selector("#stop[aria-pressed=false]")
     page.click("#reset")
