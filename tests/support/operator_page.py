@@ -27,6 +27,7 @@ def operate(page: Any, served: Any) -> None:
     operate_the_scenario(page, served)
     operate_the_pages(page, served)
     operate_the_others(page, served)
+    operate_a_channel(page, served)
     read_the_keys(page)
     lose_the_connection(page, served)
 
@@ -271,6 +272,40 @@ def operate_the_others(page: Any, served: Any) -> None:
     page.wait_for_selector("#page-tasks tr:has(#start-2) td:has-text('stopped')")
     page.select_option("#machine", "machine")
     page.wait_for_selector("#keys", state="visible")
+
+
+def operate_a_channel(page: Any, served: Any) -> None:
+    """Choose the second channel of a machine: it is shown, and what is commanded is commanded of it alone."""
+    page.select_option("#machine", "two")
+    page.wait_for_selector("#channel option:has-text('2: Z · ready')", state="attached")
+    page.select_option("#channel", "1")
+    page.wait_for_selector("cnc-axes tr.other:has-text('X')")
+    assert page.locator("[data-jog]").all_text_contents() == ["Z+", "Z−"]
+    two = str(served.http.base_url).replace("/machine/", "/two/")
+
+    def channels() -> Any:
+        return httpx.get(f"{two}status").json()["channels"]
+
+    choose(page, "mdi")
+    page.fill("#mdi", "G91 G1 Z-1.5 F3000")
+    page.click("#enter")
+    until(page, lambda: page.text_content("#Z-machine") == "-1.500")
+    page.wait_for_selector("#run[data-state=completed]")
+    page.click("#marks summary")
+    page.click("#mark_3")
+    page.click("#block_delete")
+    until(page, lambda: channels()[1]["switches"]["block_delete"] == [1, 3])
+    page.click("#mark_1")
+    until(page, lambda: channels()[1]["switches"]["block_delete"] == [3])
+    assert [each["mode"] for each in channels()] == ["auto", "mdi"]
+    assert channels()[0]["switches"]["block_delete"] == []
+    page.click("#marks summary")
+    page.click("#block_delete")
+    until(page, lambda: channels()[1]["switches"]["block_delete"] == [])
+    page.select_option("#channel", "0")
+    page.wait_for_selector("[data-mode=auto][aria-pressed=true]")
+    page.select_option("#machine", "machine")
+    page.wait_for_selector("#channel", state="hidden")
 
 
 def operate_the_lease(page: Any, served: Any) -> None:

@@ -177,6 +177,10 @@ def test_the_page_shows_the_lines_of_its_file(tmp_path: Path) -> None:
         ('count = 2\nmemory = "m.db"', "2 machines cannot share m.db"),
         ("count = 1000\ndoors = {shdr = 65000}", "the ports of m go beyond 65535"),
         ("[[machine]]\nname='x'\ncontroller='plain'\ncount = 1000", "1001 machines"),
+        (
+            "[[machine]]\nname='x'\ncontroller='fanuc'\nchannels = [['X'], ['Y']]",
+            "no channels for a machine of the kind fanuc",
+        ),
     ],
 )
 def test_what_no_fleet_can_be_is_said(text: str, said: str, tmp_path: Path) -> None:

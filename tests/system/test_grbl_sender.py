@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import json
 import os
 import re
+import shutil
 import signal
 import socket
+import subprocess
 import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -18,6 +21,7 @@ from support.grbl_sender import stream
 from support.started import started, started_python
 
 MACHINE = Path(__file__).parents[1] / "support" / "grbl_machine.py"
+NODE = Path(os.environ.get("POLYCNC_NODE", Path.home() / ".cache" / "polycnc" / "node")) / "node_modules"
 TUTORIAL = Path(__file__).parents[2] / "docs" / "tutorials" / "your-sender.md"
 PROGRAM = (
     "G21 G90\n" + "".join(f"G1 X{n % 9} Y{n % 5} F6000\n" for n in range(60)) + "G2 X1\nG0 X3 Y0\nG4 P0\n"
@@ -93,6 +97,49 @@ def test_a_program_is_streamed_over_tcp_and_over_the_terminal(tmp_path: Path) ->
         finally:
             os.close(descriptor)
     assert not terminal.is_symlink()
+
+
+@contextmanager
+def cncjs(folder: Path) -> Iterator[str]:
+    """Run the server of CNCjs, with nobody to sign in; yield its URL."""
+    with socket.create_server(("127.0.0.1", 0)) as free:
+        port = str(free.getsockname()[1])
+    (folder / "cncjs.json").write_text("{}")
+    command = [NODE / "cncjs" / "bin" / "cncjs", "-H", "127.0.0.1", "-p", port, "-c", folder / "cncjs.json"]
+    with subprocess.Popen(
+        ["node", *command], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True
+    ) as server:
+        try:
+            assert any("Starting the server" in line for line in server.stdout or ())
+            yield f"http://127.0.0.1:{port}"
+        finally:
+            server.kill()
+
+
+@pytest.mark.skipif(
+    shutil.which("node") is None or not (NODE / "cncjs").is_dir(),
+    reason="no CNCjs: npm install --prefix ~/.cache/polycnc/node cncjs",
+)
+def test_cncjs_opens_the_terminal_and_sends_a_program(tmp_path: Path) -> None:
+    terminal = tmp_path / "tty"
+    client = Path(__file__).parents[1] / "support" / "cncjs_client.cjs"
+    with (
+        started_python(MACHINE, "0", str(terminal), "20") as process,
+        machine(process, f" and {re.escape(str(terminal))}"),
+        cncjs(tmp_path) as url,
+    ):
+        program = "G21 G90|G1 X20 Y5 F6000|G2 X1|G0 X7.5 Y0|G4 P0.1"
+        done = subprocess.run(
+            ["node", client, url, terminal, program], capture_output=True, text=True, timeout=120, check=False,
+            env={**os.environ, "NODE_PATH": str(NODE)},
+        )  # fmt: skip
+    assert done.returncode == 0, done.stderr
+    said = dict(json.loads(line) for line in done.stdout.splitlines())
+    assert said.pop("refused").startswith("error:35 ")
+    assert said == {
+        "modal": "G21", "fastest": "30000.000", "load": None, "sent": [6, 6, 6],
+        "position": {"x": "7.500", "y": "0.000", "z": "0.000"},
+    }  # fmt: skip
 
 
 def test_the_conversation_of_the_tutorial() -> None:

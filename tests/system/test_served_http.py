@@ -41,12 +41,17 @@ program = "ask.npg"
 [[machine]]
 name = "board"
 controller = "apci"
+[[machine]]
+name = "two"
+controller = "plain"
+file = "mill3"
+channels = [["X", "Y"], ["Z"]]
 """
 ASKS = '10 PRN(4,6,"WHICH HAND?")\n20 #K%=0\n30 SFK(#K%,"LEFT","RIGHT&HAND")\nN40 G1 X1 F60\nM30\n'
 
 
 class Served:
-    """A process that serves a control, a Bosch control that asks for keys, a board, and a client of each door."""
+    """A process that serves a control, a Bosch one that asks for keys, a board, one with two channels; and clients."""
 
     def __init__(self, folder: Path) -> None:
         (folder / "machines.toml").write_text(MACHINES)
@@ -62,7 +67,7 @@ class Served:
 
     def rate(self, rate: float) -> None:
         """Let the time of all machines pass at a rate; that of those at which nobody looks costs as much."""
-        for name in ("machine", "pnc", "board"):
+        for name in ("machine", "pnc", "board", "two"):
             httpx.post(f"{self.url}/api/machines/{name}/clock", json={"rate": rate}, timeout=60)
 
     def status(self) -> dict[str, Any]:
@@ -240,6 +245,7 @@ def test_the_page_operates_the_machine(size: tuple[int, int], served: Served, ch
     assert page.locator("#stop").bounding_box()["y"] < size[1]
     page.click("#stop")
     page.wait_for_selector("#alarms p")
+    assert page.evaluate("document.documentElement.scrollWidth") <= size[0]
     page.click("#stop")
     page.wait_for_selector("#stop[aria-pressed=false]")
     page.click("#reset")

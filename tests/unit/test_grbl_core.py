@@ -71,6 +71,23 @@ WRONG = (
 )  # fmt: skip
 
 
+def test_what_is_refused_first_leaves_no_program_that_waits() -> None:
+    """Nor does what only asks: the operator's mode and the state of the control are as before."""
+    core = GrblCore(control := grbl_control(load_machine("mill3")))
+    for mode in (Mode.JOG, Mode.AUTO, Mode.MDI):
+        control.select_mode(mode)
+        for line in ("G99", "G1 X1", "G2 X20 Y5 I99 F100", "G80 X1", "$J=X1 F0", "$J=X1", "$G", "$#"):
+            core.receive(line.encode() + b"\n")
+            control.advance(2)
+            core.turn()
+            channel = control.channel_status()
+            assert (control.mode, channel.active, channel.motion) == (mode, False, "none"), line
+            assert core.state == "Idle", line
+    assert core.receive(b"G0 X7.5\n") == b"ok\r\n"
+    control.advance(500)
+    assert control.axes()["X"].machine == 7.5
+
+
 def test_a_wrong_line_has_its_number_and_stops_nothing() -> None:
     bench = Bench()
     bench.send(UNIT + "G10 L20 P2 X0\nG53 G0 X37.5\n", 500)
@@ -162,7 +179,10 @@ def test_modal_words_and_parameters() -> None:
     bench = Bench()
     assert bench.send("$G\n") == ["[GC:G0 G54 G17 G21 G90 G94 M5 M9 T0 F0 S0]", "ok"]
     bench.send("G20 G91 G18 G55 G1 F20 S500 M3 M8 T2\n", 2000)
-    assert bench.send("$G\n") == ["[GC:G1 G55 G18 G20 G91 G94 M3 M8 T2 F20 S500]", "ok"]
+    assert bench.send("$G\n") == ["[GC:G1 G55 G18 G20 G91 G94 M3 M8 T2 F508 S500]", "ok"]
+    bench.send("$13=1\n")
+    assert "F20.0" in bench.send("$G\n")[0]
+    assert "F2000000" in bench.send("$13=0\nG21 F2000000\n$G\n")[-2], "senders read no exponents"
     bench.send("G21 G90 G92 X1\n", 50)
     found = bench.send("$#\n")
     assert found[0] == "[G54:0.000,0.000,0.000]"

@@ -16,7 +16,7 @@ from support.mtconnect import Rig, assert_valid, header_of, plain, values_of
 PROGRAM = "N10 G90 G1 F1200 X40 S800 M3\nN20 Y30\nM1\nN30 G2 X0 Y0 R30\nM30\n"
 REQUESTS = [
     ("/probe", ""), ("/", ""), ("/mill", ""), ("/mill/probe", ""), ("/polycnc.mill/probe", ""),
-    ("/current", ""), ("/mill/current", "path=//Path"), ("/current", "at=7"), ("/sample", "count=500"),
+    ("/current", ""), ("/mill/current", "path=//Path"), ("/current", "at=7"), ("/sample", "count=500&_=1717"),
     ("/sample", "count=-5"), ("/sample", "from=3&to=9"), ("/mill/sample", "path=//Linear&count=3"),
     ("/assets", ""), ("/assets", "removed=true&count=1"), ("/asset", "type=CuttingTool"),
     ("/asset/mill.T3", ""), ("/assets/mill.T3;mill.T7", ""), ("/mill/assets", ""), ("/assets", "type=Pallet"),

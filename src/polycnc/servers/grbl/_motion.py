@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 
-from polycnc.cnc import Control, Mode, OpenProgram
+from polycnc.cnc import Control, ControlError, Mode, OpenProgram
 from polycnc.errors import ProgramError
 from polycnc.nc import Group, ModalWords
 from polycnc.servers.grbl._codes import GrblAlarm, GrblError, RefusedError
@@ -67,7 +68,8 @@ class Sending:
             return self._kept
         if self._state.locked or self._control.channel_status().interrupted:
             return self._control.channel_status().modal
-        return self._opened().modal_ahead()
+        with self._opened() as program:
+            return program.modal_ahead()
 
     def take_messages(self) -> list[str]:
         """Return what lines that were executed have to tell, once."""
@@ -76,24 +78,44 @@ class Sending:
 
     # ------------------------------------------------------------------ the program
 
-    def _opened(self) -> OpenProgram:
-        """Return the open program; it is begun where there is none.
+    @contextmanager
+    def _opened(self) -> Iterator[OpenProgram]:
+        """Give the open program, a new one where there is none. Nothing is left of a new one that was fed nothing.
 
         Raises:
             RefusedError: The control executes something else.
             ControlError: It cannot begin.
         """
         if self._program is not None and self._program.is_open:
-            return self._program
+            yield self._program
+            return
         control = self._control
-        channel = control.channel_status()
+        channel, mode = control.channel_status(), control.mode
         if channel.active or channel.interrupted:
             raise RefusedError(GrblError.NOT_IDLE)
-        if control.mode is not Mode.MDI:
+        if mode is not Mode.MDI:
             control.select_mode(Mode.MDI)
-        self._program = control.open_program(NAME)
-        control.cycle_start()
-        return self._program
+        program, kept = control.open_program(NAME), self._kept
+        try:
+            yield program
+            if program.lines or self._state.checking:
+                self._start(program, kept)
+        except RefusedError:
+            if program.lines:  # what was in force before a jog
+                self._start(program, kept)
+            raise
+        finally:
+            if self._program is not program and mode is not Mode.MDI:
+                control.select_mode(mode)
+
+    def _start(self, program: OpenProgram, kept: ModalWords | None) -> None:
+        try:
+            self._control.cycle_start()
+        except ControlError:
+            self._kept = kept
+            self._control.open_program(NAME)  # in place of the one whose blocks cannot be executed
+            raise
+        self._program = program
 
     def free(self) -> Iterator[None]:
         """End the open program, so that the control can do something else."""
@@ -103,13 +125,11 @@ class Sending:
             yield
         self._program = None
 
-    def _restored(self) -> OpenProgram:
-        """Return the open program with what was in force before a jog."""
-        program = self._opened()
+    def _restore(self, program: OpenProgram) -> None:
+        """Feed what was in force before a jog."""
         if self._kept is not None:
             kept, self._kept = self._kept, None
             program.feed(self._restoring(kept, program) + "\n")
-        return program
 
     def _restoring(self, kept: ModalWords, program: OpenProgram) -> str:
         codes = [kept.g.get(group, "G80") for group in _KEPT]
@@ -135,13 +155,12 @@ class Sending:
             RefusedError: It is wrong; nothing has changed.
         """
         words = read_words(text)
-        program = self._restored()
-        check_words(words, program.modal_ahead())
-        if self._state.checking:
-            self._fed(program.rehearse, text, words)
-            return
-        if not self._fed(program.feed, text, words):
-            return
+        with self._opened() as program:
+            check_words(words, self._kept or program.modal_ahead())
+            self._restore(program)
+            checking = self._state.checking
+            if not self._fed(program.rehearse if checking else program.feed, text, words) or checking:
+                return
         self._note_coolant(words)
         if words.needs_rest:
             while not self.rests:
@@ -211,18 +230,18 @@ class Sending:
             raise RefusedError(GrblError.NO_AXES)
         if words.values.get("F", 0.0) <= 0.0:
             raise RefusedError(GrblError.NO_FEED)
-        program = self._opened()
-        modal = self._kept or program.modal_ahead()
-        target = self._target(words, modal, program.position_ahead())
-        axes = self._control.machine.config.axes
-        for index, at in target.items():
-            low, high = axes[index].soft_limits
-            if self._settings.flag(SOFT_LIMITS) and not low - 1e-9 <= at <= high + 1e-9:
-                raise RefusedError(GrblError.TRAVEL)
-        inch = words.g.get("units", 20.0 if modal.inch else 21.0) == 20.0
-        feed = words.values["F"] * (MM_PER_INCH if inch else 1.0)
-        points = " ".join(f"{axes[index].name}{at:.6f}" for index, at in target.items())
-        program.feed(f"G53 G90 G21 G94 G1 {points} F{feed:.6f}\n")
+        with self._opened() as program:
+            modal = self._kept or program.modal_ahead()
+            target = self._target(words, modal, program.position_ahead())
+            axes = self._control.machine.config.axes
+            for index, at in target.items():
+                low, high = axes[index].soft_limits
+                if self._settings.flag(SOFT_LIMITS) and not low - 1e-9 <= at <= high + 1e-9:
+                    raise RefusedError(GrblError.TRAVEL)
+            inch = words.g.get("units", 20.0 if modal.inch else 21.0) == 20.0
+            feed = words.values["F"] * (MM_PER_INCH if inch else 1.0)
+            points = " ".join(f"{axes[index].name}{at:.6f}" for index, at in target.items())
+            program.feed(f"G53 G90 G21 G94 G1 {points} F{feed:.6f}\n")
         self._kept = modal
         self._state.jogging = True
 

@@ -122,6 +122,6 @@ def modal_report(modal: ModalWords, coolant: frozenset[str], units: Units) -> st
     if Group.MOTION not in modal.g:
         words.insert(0, "G80")
     words += [_SPINDLE[modal.spindle_direction], *(sorted(coolant) or ["M9"])]
-    feed = modal.feed if modal.inch or modal.feed != int(modal.feed) else int(modal.feed)
-    words += [f"T{modal.next_tool or modal.tool}", f"F{feed:g}", f"S{modal.speed:g}"]
+    feed_mm = modal.feed * (MM_PER_INCH if modal.inch else 1.0)
+    words += [f"T{modal.next_tool or modal.tool}", f"F{units.rate(feed_mm)}", f"S{modal.speed:.0f}"]
     return f"[GC:{' '.join(words)}]"

@@ -42,7 +42,7 @@ class CheckRoutes:
             f"{ONE}/check",
             summary="What is wrong with a program.",
             response_model=list[ErrorShown],
-            openapi_extra=body(_TEXT, "text/plain"),
+            openapi_extra=body(_TEXT, "text/plain", required=False),
         )(self.check)
 
     async def check(

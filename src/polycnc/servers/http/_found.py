@@ -67,9 +67,9 @@ class Found:
         return found, found.programs
 
 
-def body(schema: dict[str, Any], kind: str = JSON) -> dict[str, Any]:
-    """Return how a body is described."""
-    return {"requestBody": {"required": True, "content": {kind: {"schema": schema}}}}
+def body(schema: dict[str, Any], kind: str = JSON, *, required: bool = True) -> dict[str, Any]:
+    """Return how a body is described; one that is not `required` may be empty."""
+    return {"requestBody": {"required": required, "content": {kind: {"schema": schema}}}}
 
 
 def answer(schema: dict[str, Any], kind: str = JSON, code: int = 200) -> dict[int | str, dict[str, Any]]:

@@ -30,10 +30,11 @@ def rate_of(text: str | None) -> float:
 
 
 class Stream:
-    """One viewer. It may hold jog keys: `{"jog": {"axis": "X", "direction": 1}}`, repeated while the key is held.
-    Where somebody holds the machine, `"key": "..."` beside it is the holder's.
+    """One viewer. It may hold jog keys: `{"jog": {"axis": "X", "direction": 1}}`, repeated while the key is held, with
+    `"repeat": true` in it. Where somebody holds the machine, `"key": "..."` beside it is the holder's.
 
-    A key that is not repeated for half a second, or whose connection is lost, is released.
+    A key that is not repeated for half a second, or whose connection is lost, is released; a repeat that comes later
+    does not press it again.
     """
 
     def __init__(self, socket: WebSocket, machine: ServedMachine, rate: float, lease: Lease) -> None:
@@ -84,6 +85,7 @@ class Stream:
             message = json.loads(text)
             jog, key = message["jog"], str(message.get("key", ""))[:64]
             axis, direction, rapid = jog["axis"], jog.get("direction"), jog.get("rapid", False)
+            is_repeat = jog.get("repeat", False)
         except (ValueError, KeyError, TypeError, AttributeError, RecursionError):
             return {
                 "refused": {"detail": "not a jog key", "hint": 'Send {"jog": {"axis": "X", "direction": 1}}.'}
@@ -92,6 +94,7 @@ class Stream:
             return {"refused": {"detail": "an axis is text", "hint": "Name it."}}
         if not direction:
             self._release(axis)
+        if not direction or (is_repeat and axis not in self._held):
             return None
         try:
             self._lease.check(key)

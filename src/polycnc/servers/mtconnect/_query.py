@@ -19,7 +19,10 @@ _KNOWN = {
     "asset": {"type", "count", "removed"},
     "assets": {"type", "count", "removed"},
 }
-_ALWAYS = {"pretty"}  # agents have it; documents are indented anyway
+_ALWAYS = {
+    "pretty",
+    "_",
+}  # agents have the one, documents are indented anyway; pages pass their caches by the other
 MOST_INTERVAL_MS = 2**31 - 1
 
 

@@ -24,7 +24,7 @@ def make_bosch(wanted: Machinery) -> Made:
     if wanted.memory is None:
         raise UsageError("a Bosch control keeps its files in a folder", hint="Name one with --memory.")
     wanted.memory.mkdir(parents=True, exist_ok=True)
-    pnc = Pnc(wanted.memory, wanted.file)
+    pnc = Pnc(wanted.memory, wanted.file, channels=wanted.channels)
     modes = {
         Mode.AUTO: BoschMode.AUTOMATIC, Mode.MDI: BoschMode.MDI, Mode.JOG: BoschMode.JOG,
         Mode.REF: BoschMode.REFERENCE,

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 
-from polycnc.cnc import Control
+from polycnc.cnc import ChannelData, Control
 from polycnc.servers.machines import MemoryPrograms
 from polycnc.servers.process._io_values import IoValues
 from polycnc.servers.process._made import Machinery, Made
@@ -12,7 +12,8 @@ from polycnc.servers.process._plain_values import MacroValues, PlainParameters
 
 
 def _plain(wanted: Machinery) -> Made:
-    control = Control(wanted.file, memory=wanted.memory)
+    channels = [ChannelData(axes, spindle=number == 0) for number, axes in enumerate(wanted.channels)]
+    control = Control(wanted.file, channels=channels, memory=wanted.memory)
 
     def end() -> None:
         control.timers.save()

@@ -14,13 +14,17 @@ from polycnc.servers.machines import NO_PARAMETERS, NO_SIGNALS, NO_VARIABLES, Pr
 
 @dataclass(frozen=True, slots=True)
 class Machinery:
-    """What a machine is to be made of: `file` is its machine, system or card file, None for the kind's own default."""
+    """What a machine is to be made of: `file` is its machine, system or card file, None for the kind's own default.
+
+    `channels` are the axes of each channel; without any, one has them all.
+    """
 
     name: str = "machine"
     file: str | Path | None = None
     memory: Path | None = None
     axes: int = 3
     characters: int = 128_000
+    channels: tuple[tuple[str, ...], ...] = ()
 
 
 @dataclass(frozen=True, slots=True)

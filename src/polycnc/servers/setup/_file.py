@@ -16,15 +16,17 @@ MOST_PORT = 65535
 Port: TypeAlias = Annotated[int, Field(ge=0, le=MOST_PORT)]
 MOST_MACHINES = 1000
 MOST_PROCESSES = 64
+MOST_CHANNELS = 32
 _NUMBER = "{n}"
+_WITH_CHANNELS = "plain", "bosch"
 _NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9_.-]{0,31}")
 
 
 class MachineTable(StrictModel):
     """One machine: `file` is its machine, system or card file; `doors` are ports by door, 0 for free ones.
 
-    With `count` it is so many of them: `{n}` in a text is the number, which is put after a name without it; ports
-    count up.
+    `channels` are lists of axes, for a plain or bosch control; the first one has the spindle. With `count` it is so
+    many of them: `{n}` in a text is the number, which is put after a name without it; ports count up.
     """
 
     name: Annotated[
@@ -43,6 +45,7 @@ class MachineTable(StrictModel):
     memory: str | None = None
     rate: Annotated[float, Field(ge=0.0, le=1000.0)] = 1.0
     axes: Annotated[int, Field(ge=1, le=6)] = 3
+    channels: Annotated[tuple[tuple[str, ...], ...], Field(max_length=MOST_CHANNELS)] = ()
     doors: dict[str, Port] = Field(default_factory=dict)
 
 
@@ -89,9 +92,14 @@ def _each(table: MachineTable, path: Path) -> Iterator[MachineTable]:
     """Give the machines that a table stands for.
 
     Raises:
-        UsageError: They would have one memory, or a name that is none.
+        UsageError: They would have one memory, a name that is none, or channels that their kind has not.
     """
     several = table.count > 1
+    if table.channels and table.controller not in _WITH_CHANNELS:
+        raise UsageError(
+            f"{path}: no channels for a machine of the kind {table.controller}",
+            hint=f"Kinds that have channels are {', '.join(_WITH_CHANNELS)}.",
+        )
     if several and table.memory is not None and _NUMBER not in table.memory:
         raise UsageError(
             f"{path}: {table.count} machines cannot share {table.memory}", hint="Write {n} into its name."

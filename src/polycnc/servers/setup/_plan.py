@@ -244,7 +244,13 @@ def _of_file(
         machines.append(
             MachineWanted(
                 each.controller,
-                Machinery(each.name, _file_of(each, path), _beside(path, each.memory), each.axes),
+                Machinery(
+                    each.name,
+                    _file_of(each, path),
+                    _beside(path, each.memory),
+                    each.axes,
+                    channels=each.channels,
+                ),
                 _beside(path, each.program),
                 each.rate,
                 _scenario(_beside(path, each.faults), each.controller),

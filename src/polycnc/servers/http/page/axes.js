@@ -7,13 +7,15 @@ const kind = (key) => (OPTIONAL.includes(key) ? "optional" : key);
 const number = (value) => (typeof value === "number" && !Number.isInteger(value) ? value.toFixed(3) : String(value));
 
 class Axes extends HTMLElement {
-  show(axes) {
+  // Those that are not `own` belong to another channel.
+  show(axes, own) {
     if (this.names !== Object.keys(axes).join()) this.build(axes);
     for (const [name, axis] of Object.entries(axes)) {
       const cells = this.cells[name];
       for (const key of ["work", "machine", "relative", "to_go"]) put(cells[key], axis[key].toFixed(3));
       put(cells.error, axis.following_error.toFixed(3));
       put(cells.load, `${axis.load_percent.toFixed(0)} %`);
+      cells.row.classList.toggle("other", !own.includes(name));
       cells.name.classList.toggle("unreferenced", !axis.referenced);
       cells.name.title = axis.referenced ? "" : TEXTS.unreferenced;
     }
@@ -26,7 +28,7 @@ class Axes extends HTMLElement {
     const rows = Object.entries(axes).map(([name, axis]) => {
       const cells = (this.cells[name] = { name: make("th", { scope: "row" }, name, make("small", {}, axis.unit === "deg" ? "°" : "")) });
       for (const key of COLUMNS) cells[key] = make("td", { class: kind(key), id: `${name}-${key}` });
-      return make("tr", {}, ...Object.values(cells));
+      return (cells.row = make("tr", {}, ...Object.values(cells)));
     });
     this.replaceChildren(make("table", {}, head, ...rows));
   }

@@ -3,13 +3,14 @@ import { say } from "/dom.js";
 import { TEXTS } from "/texts.js";
 import { Lease } from "/lease.js";
 
+const OF_CHANNEL = ["select_mode", "select_program", "set_mdi", "search", "cycle_start", "feed_hold", "reset", "set_overrides", "set_switches", "set_breakpoints"];
 const RATE = 20, STALE_MS = 700, LOOK_MS = 100, AGAIN_MS = 1000;
 
 export class Link extends EventTarget {
   // Events: `message` (detail: what the stream tells), `status` (detail: a status), `lost`.
   constructor() {
     super();
-    Object.assign(this, { name: "", parts: [], status: null, socket: null, seen: -Infinity, lost: true });
+    Object.assign(this, { name: "", channel: 0, parts: [], status: null, socket: null, seen: -Infinity, lost: true });
     this.lease = new Lease(this);
     setInterval(() => { if (performance.now() - this.seen > STALE_MS) this.lose(); }, LOOK_MS);
   }
@@ -32,7 +33,9 @@ export class Link extends EventTarget {
   async send(method, rest, body) { return Boolean(await this.ask(rest, { method, body: typeof body === "string" ? body : JSON.stringify(body) })); }
   async quietly(rest) { const answer = await fetch(this.url(rest)).catch(() => null); return answer?.ok ? answer : null; }
 
+  // What is commanded of a channel is of the one that is shown, where there are several.
   async command(name, values = {}) {
+    if (this.status?.channels?.length > 1 && OF_CHANNEL.includes(name)) values = { ...values, channel: this.channel };
     const status = await this.json("commands", { method: "POST", body: JSON.stringify({ command: name, ...values }) });
     if (status) this.show(status);
     return Boolean(status);
@@ -69,7 +72,7 @@ export class Link extends EventTarget {
     this.socket = null;
     socket?.close();
   }
-  jog(axis, direction, rapid) {
-    if (this.socket?.readyState === WebSocket.OPEN) this.socket.send(JSON.stringify({ jog: { axis, direction, rapid }, key: this.lease.key }));
+  jog(axis, direction, rapid, repeat = false) {
+    if (this.socket?.readyState === WebSocket.OPEN) this.socket.send(JSON.stringify({ jog: { axis, direction, rapid, repeat }, key: this.lease.key }));
   }
 }

@@ -55,9 +55,8 @@ export class Manual {
     if (this.mode === "ref") this.link.command("reference", { axis });
     if (this.mode === "handle") this.wheel.turn(direction, axis);
     if (this.mode !== "jog" || this.held.has(axis)) return;
-    const beat = () => this.link.jog(axis, direction, rapid);
-    beat();
-    this.held.set(axis, setInterval(beat, BEAT_MS)); // a key that is not repeated is released by the machine
+    this.link.jog(axis, direction, rapid);
+    this.held.set(axis, setInterval(() => this.link.jog(axis, direction, rapid, true), BEAT_MS)); // a key that is not repeated is released by the machine
   }
   release(axis) {
     if (!this.held.has(axis)) return;

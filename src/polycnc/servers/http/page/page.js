@@ -3,6 +3,7 @@ import { $, button, isPressed, kept, make, put, toggle } from "/dom.js";
 import { TEXTS } from "/texts.js";
 import { Charts } from "/charts.js";
 import { Link } from "/link.js";
+import { channelChoice, Marks } from "/choices.js";
 import { Manual } from "/manual.js";
 import { Mdi } from "/mdi.js";
 import { Path } from "/path.js";
@@ -13,11 +14,11 @@ import { follow, shortcutList } from "/shortcuts.js";
 import { THEMES, theme, wear } from "/theme.js";
 import "/axes.js";
 
-const SWITCHES = ["single_block", "dry_run", "optional_stop", "block_delete", "machine_lock"];
+const SWITCHES = ["single_block", "dry_run", "optional_stop", "machine_lock"];
 const RATES = [0, 0.1, 0.5, 1, 2, 5, 10, 50], REDRAW_MS = 300, AGAIN_MS = 1000, MOST_JUMP = 60_000;
 
-const link = new Link(), path = new Path($("path"), $("views")), charts = new Charts($("charts")), axes = document.querySelector("cnc-axes"), runPage = $("page-run");
-let parts = null; // of the machine that is looked at: what is built for it
+const link = new Link(), channels = channelChoice(link, (number) => choose(shown, number)), path = new Path($("path"), $("views")), charts = new Charts($("charts")), axes = document.querySelector("cnc-axes"), runPage = $("page-run");
+let parts = null, shown = null; // the machine that is looked at, and what is built for it
 
 // ---------------------------------------------------------------- what is shown
 
@@ -41,23 +42,27 @@ link.addEventListener("lost", () => {
 });
 
 link.addEventListener("status", ({ detail: status }) => {
-  const channel = status.channels?.[0];
+  const channel = status.channels?.[link.channel];
   put($("clock"), `${status.time_s.toFixed(1)} s`);
   if (!channel) { axes.showBoard(status); return; }
-  put($("mode"), TEXTS.modes[status.mode] ?? status.mode);
+  put($("mode"), TEXTS.modes[channel.mode] ?? channel.mode);
+  channels.show(status);
   $("run").dataset.state = channel.run_state;
   put($("run"), channel.run_state.replaceAll("_", " "));
-  axes.show(status.axes);
-  path.at(status.axes, channel.block?.program === parts.program.name ? channel.block.line : 0, !OVER.includes(channel.run_state));
+  axes.show(status.axes, channel.axes);
+  path.at(ownAxes(status), channel.block?.program === parts.program.name ? channel.block.line : 0, !OVER.includes(channel.run_state));
   charts.add(status, channel.feed);
   notices("alarms", status.alarms);
   notices("messages", status.messages);
   parts.words.show(status, channel);
-  parts.manual.show(status.mode);
+  parts.manual.show(channel.mode);
   parts.program.show(status, channel);
   put($("far-line"), [`F ${channel.feed.actual.toFixed(0)}`, `S ${status.spindle.actual_rpm.toFixed(0)}`, `T${channel.tool.number}`, channel.program ?? "", $("progress").textContent].filter(Boolean).join("  ·  "));
-  showKeys(status);
+  showKeys(channel, status.emergency === "on");
 });
+
+// The axes of the channel that is shown.
+const ownAxes = (status) => Object.fromEntries((status.channels?.[link.channel].axes ?? []).map((name) => [name, status.axes[name]]));
 
 function notices(id, all) {
   const told = JSON.stringify(all), place = $(id);
@@ -66,10 +71,10 @@ function notices(id, all) {
   place.replaceChildren(...all.map((each) => make("p", {}, each.number < 0 ? each.text : `${each.number} ${each.text}`, make("span", {}, TEXTS.cleared[each.cleared_by] ?? ""))));
 }
 
-function showKeys(status) {
-  for (const key of document.querySelectorAll("[data-mode]")) key.setAttribute("aria-pressed", key.dataset.mode === status.mode);
-  for (const name of SWITCHES) $(name).setAttribute("aria-pressed", Array.isArray(status.switches[name]) ? status.switches[name].length > 0 : status.switches[name]);
-  const pressed = status.emergency === "on";
+function showKeys(channel, pressed) {
+  for (const key of document.querySelectorAll("[data-mode]")) key.setAttribute("aria-pressed", key.dataset.mode === channel.mode);
+  for (const name of SWITCHES) $(name).setAttribute("aria-pressed", channel.switches[name]);
+  parts.marks.show(channel.switches.block_delete);
   $("stop").setAttribute("aria-pressed", pressed);
   put($("stop"), pressed ? TEXTS.release : TEXTS.stop);
 }
@@ -95,20 +100,19 @@ addEventListener("pagehide", () => parts?.manual.releaseAll());
 document.addEventListener("visibilitychange", () => { if (document.hidden) parts?.manual.releaseAll(); });
 
 function buildKeys() {
-  const key = (name) => button(name, TEXTS[name], () => link.command(name));
+  const marks = new Marks(link), key = (name) => button(name, TEXTS[name], () => link.command(name));
   const group = (name, ...inside) => make("div", { role: "group", "aria-label": TEXTS[name], class: "row" }, ...inside);
-  const turn = (name) => (on) => link.command("set_switches", { [name]: name === "block_delete" ? (on ? [1] : []) : on });
   $("keys").replaceChildren(
     group("key_group", ...["cycle_start", "feed_hold", "reset"].map(key)),
     group("mode_group", ...Object.entries(TEXTS.modes).map(([mode, text]) => make("button", { "data-mode": mode, "aria-pressed": "false", onclick: () => link.command("select_mode", { mode }) }, text))),
-    group("switch_group", ...SWITCHES.map((name) => toggle(name, TEXTS[name], turn(name)))));
+    group("switch_group", ...SWITCHES.map((name) => toggle(name, TEXTS[name], (on) => link.command("set_switches", { [name]: on }))), ...marks.elements));
+  return marks;
 }
 
 function build() {
-  const names = Object.keys(link.status.channels ? link.status.axes : {});
-  buildKeys();
+  const names = Object.keys(ownAxes(link.status)), marks = buildKeys();
   new Mdi(link, $("mdi_line"));
-  parts = { words: new Words(link), manual: new Manual(link, $("hand"), names), program: new Program(link, () => drawPath(parts.program.selected)), tabs: new Tabs(link, $("store"), runPage) };
+  parts = { marks, words: new Words(link), manual: new Manual(link, $("hand"), names), program: new Program(link, () => drawPath(parts.program.selected)), tabs: new Tabs(link, $("store"), runPage) };
 }
 
 // ---------------------------------------------------------------- what is there from the beginning
@@ -121,7 +125,7 @@ function buildTools(machines) {
   const colours = make("select", { id: "theme", "aria-label": TEXTS.theme, title: TEXTS.theme, onchange: () => wear(colours.value) }, ...THEMES.map((name) => option(name, TEXTS.themes[name])));
   const list = shortcutList();
   document.body.append(list);
-  $("tools").replaceChildren(machine, rate, button("one_cycle", TEXTS.one_cycle, () => clock({ step: 1 })), button("next_event", TEXTS.next_event, () => clock({ jump: MOST_JUMP })),
+  $("tools").replaceChildren(machine, channels.select, rate, button("one_cycle", TEXTS.one_cycle, () => clock({ step: 1 })), button("next_event", TEXTS.next_event, () => clock({ jump: MOST_JUMP })),
     toggle("far", TEXTS.far, (on) => { document.body.classList.toggle("far", on); kept.set("far", on); }), button("help", TEXTS.help, () => (list.open ? list.close() : list.show())), colours, link.lease.button);
   const header = document.querySelector("header"); // what is sticky of it on a small screen begins after the tools
   new ResizeObserver(() => header.style.setProperty("--tools", `${$("tools").offsetHeight}px`)).observe($("tools"));
@@ -134,19 +138,22 @@ function buildTools(machines) {
   if (kept.get("far", false)) $("far").click();
 }
 
-async function choose(machine) {
-  if (link.name && link.lease.mine) await link.lease.release();
+async function choose(machine, channel = 0) {
+  const tab = machine === shown ? parts?.tabs.shown : null;
+  if (link.name && link.lease.mine && machine !== shown) await link.lease.release();
+  shown = machine;
   parts?.manual.releaseAll();
   parts?.tabs.close();
   link.leave();
   clearTimeout(drawPath.timer);
-  Object.assign(link, { name: machine.name, parts: machine.parts, kind: machine.kind });
+  Object.assign(link, { name: machine.name, channel, parts: machine.parts, kind: machine.kind });
   document.body.classList.toggle("board", !link.has("control"));
   path.clear();
   charts.clear();
   link.status = await link.json("status");
-  if (!link.status) { setTimeout(() => { if (!parts || link.name === machine.name) choose(machine); }, AGAIN_MS); return; }
+  if (!link.status) { setTimeout(() => { if (!parts || link.name === machine.name) choose(machine, channel); }, AGAIN_MS); return; }
   build();
+  if (tab) parts.tabs.open(tab);
   link.show(link.status);
   link.connect();
 }

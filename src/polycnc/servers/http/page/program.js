@@ -24,7 +24,7 @@ export class Program {
   }
 
   show(status, channel) {
-    const { block } = channel, left_s = status.left_s?.[0] ?? 0, { timers_s: timers, parts } = status;
+    const { block } = channel, left_s = status.left_s?.[this.link.channel] ?? 0, { timers_s: timers, parts } = status;
     this.selected = channel.program ?? "";
     const calls = (block?.stack ?? []).map((call) => `${call.program}:${call.line}${call.repeat > 1 ? ` ×${call.repeat}` : ""}`);
     put($("name"), [...calls, block?.program ?? channel.program ?? TEXTS.no_program].join(" › "));
@@ -33,7 +33,7 @@ export class Program {
     const wanted = block && !OVER.includes(channel.run_state) ? block.program : this.selected;
     if (wanted !== this.name) this.load(wanted);
     this.run(block && block.program === this.name ? block.line : 0);
-    for (const step of ["over", "into", "out"]) $(`step_${step}`).disabled = !["auto", "mdi"].includes(status.mode);
+    for (const step of ["over", "into", "out"]) $(`step_${step}`).disabled = !["auto", "mdi"].includes(channel.mode);
   }
 
   async load(name) {
@@ -106,7 +106,7 @@ export class Program {
   }
 
   setBreakpoints(all) { this.breakpoints = all; this.showBreakpoints(); }
-  ownBreakpoints() { return this.breakpoints.filter((each) => each.program === this.name).map((each) => each.line); }
+  ownBreakpoints() { return this.breakpoints.filter((each) => each.program === this.name && each.channel === this.link.channel).map((each) => each.line); }
   showBreakpoints() {
     const marked = new Set(this.ownBreakpoints());
     [...this.holder.children].forEach((line, k) => line.classList.toggle("breakpoint", marked.has(this.first + k + 1)));

@@ -26,7 +26,7 @@ class Tools extends Page {
 
   // The tool touches Z 0 of the work offset in force: what is left of Z is its length.
   async touch(number, set) {
-    const { axes, channels: [channel] } = this.link.status;
+    const { axes } = this.link.status, channel = this.link.status.channels[this.link.channel];
     if (await set(number, { length_mm: rounded(axes.Z.work + channel.tool.compensation_mm) })) say(TEXTS.touched);
     this.show();
   }
@@ -50,7 +50,7 @@ class Offsets extends Page {
 
   // Program zero is where the axes are: what the external shift and the tool's length in force add is taken off.
   async teach(name, axes) {
-    const { axes: now, channels: [channel] } = this.link.status, shift = this.parts.offsets?.[SHIFT] ?? {};
+    const { axes: now } = this.link.status, channel = this.link.status.channels[this.link.channel], shift = this.parts.offsets?.[SHIFT] ?? {};
     const added = (axis) => (shift[axis] ?? 0) + (axis === "Z" ? channel.tool.compensation_mm : 0);
     if (await this.set(name, Object.fromEntries(axes.map((axis) => [axis, rounded(now[axis].machine - added(axis))])))) say(TEXTS.taught);
     this.show();

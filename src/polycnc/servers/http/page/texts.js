@@ -4,6 +4,7 @@ export const TEXTS = {
   cycle_start: "Cycle start", feed_hold: "Feed hold", reset: "Reset", stop: "EMERGENCY STOP", release: "Release emergency stop",
   single_block: "Single block", dry_run: "Dry run", optional_stop: "Optional stop", block_delete: "Block delete", machine_lock: "Machine lock",
   modes: { auto: "Auto", mdi: "MDI", jog: "Jog", inc: "Inc", handle: "Wheel", ref: "Ref", edit: "Edit" },
+  marks: "Marks that block delete skips", channel_choice: "Channel",
   mode_group: "Modes", key_group: "Keys", switch_group: "Switches",
   feed: "Feed", rapid: "Rapid", spindle: "Spindle",
   // state

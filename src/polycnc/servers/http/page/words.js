@@ -16,14 +16,14 @@ export class Words {
   }
 
   show(status, channel) {
-    const { feed, modal } = channel, { spindle } = status;
+    const { feed, modal, overrides } = channel, { spindle } = status;
     const figures = [feed.programmed, feed.commanded, feed.actual, spindle.programmed_rpm, spindle.commanded_rpm, spindle.actual_rpm];
     for (const [index, value] of figures.entries()) put($(`figure${index}`), Number(value ?? 0).toFixed(0));
     put($("tool"), `T${channel.tool.number}`);
     const words = modal ? [...Object.values(modal.g ?? {}), ...(modal.m ?? []).map((code) => `M${code}`)] : [];
     put($("modal"), words.filter((word) => typeof word === "string").join(" "));
     for (const name of Object.keys(OVERRIDES)) {
-      const slider = $(`override-${name}`), value = Math.round(status.overrides[name] * 100);
+      const slider = $(`override-${name}`), value = Math.round(overrides[name] * 100);
       if (document.activeElement === slider && slider.matches(":active")) continue; // it is being drawn
       slider.value = value;
       put($(`override-${name}-is`), `${value} %`);
