@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import ctypes
+import shutil
+import subprocess
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -13,7 +15,8 @@ from polycnc.controllers.apci import pcap
 from polycnc.controllers.fanuc import PowerMate, fwlib
 from polycnc.controllers.imc import Card, imclib
 from polycnc.servers.process import Machinery
-from support.c_library import Door, at_door, loaded
+from support.c_library import Door, at_door, built, loaded
+from support.command import environment
 from support.facade_programs import SYSTEM
 
 LARGEST, LEAST = 0x7FFFFFFF, -0x80000000
@@ -107,6 +110,43 @@ def test_two_programs_have_one_board(monkeypatch: pytest.MonkeyPatch, tmp_path: 
         one.wrjvl(ctypes.byref(records[1]))
         other.rdjvl(ctypes.byref(read))
         assert read.jvl == 12.5
+    finally:
+        door.close()
+
+
+_OPENS = """\
+#include "fwlib32.h"
+int main(void)
+{
+    unsigned short handle;
+    return cnc_allclibhndl(&handle) ? 1 : 0;
+}
+"""
+
+
+def test_a_file_beside_the_program_or_else_the_library_says_where_the_machine_is(tmp_path: Path) -> None:
+    door, library, program = Door(("fanuc", Machinery(axes=2))), tmp_path / "lib", tmp_path / "bin" / "opens"
+    shutil.copytree(built("fanuc"), library)
+    program.parent.mkdir()
+    (tmp_path / "opens.c").write_text(_OPENS)
+    subprocess.run(
+        ["gcc", "-o", program, tmp_path / "opens.c", "-I", library, "-L", library, "-lfwlib32",
+         f"-Wl,-rpath,{library}"], check=True,
+    )  # fmt: skip
+    nobody, served = 'calls = "127.0.0.1:1"\n', f'# a control\ncalls = "{door.place}"\n'
+
+    def opened(beside_program: str, beside_library: str, variable: str = "") -> bool:
+        for folder, text in ((program.parent, beside_program), (library, beside_library)):
+            (folder / "polycnc.toml").write_text(text)
+        ran = subprocess.run([program], env=environment(POLYCNC_CALLS=variable), timeout=60, check=False)
+        assert ran.returncode in (0, 1)
+        return ran.returncode == 0
+
+    try:
+        assert opened("", served)
+        assert opened(served, nobody)
+        assert not opened(nobody, served)
+        assert opened(nobody, nobody, door.place)
     finally:
         door.close()
 

@@ -20,6 +20,7 @@ from polycnc.controllers.fanuc.clib import FWLIB
 from polycnc.controllers.library.clib import Call, Slot, Way, alike, length_in
 from polycnc.errors import UsageError
 from polycnc.servers.calls import LIBRARIES, CallClient, Caller, Trace, replay
+from polycnc.servers.process import KINDS, Machinery
 from support.often import share
 
 NUMBERS = {each.function.name: each.number for each in FWLIB.calls}
@@ -354,6 +355,46 @@ def test_calls_are_traced(tmp_path: Path) -> None:
         "in": {"FlibHndl": 1, "number": 103, "length": 10, "mcr_val": 31415, "dec_val": 3},
     }  # fmt: skip
     assert lines[2]["out"] == {"macro": struct.pack("<hhih", 103, 0, 31415, 3).hex()}
+
+
+_OPENING = {
+    "fanuc": [("cnc_allclibhndl", struct.pack("<I", 2))],
+    "imc": [("IMC_Open", struct.pack("<Iii", 4, 0, 0))],
+    "apci": [("InitMcuSystem", struct.pack("<I3744xI", 3744, 3744))],
+}
+
+
+@pytest.mark.parametrize("kind", LIBRARIES)
+def test_calls_are_answered_alike_with_and_without_a_trace(kind: str, tmp_path: Path) -> None:
+    """Without one, calls that read through no pointer are carried out in a shorter way."""
+    library, dice = LIBRARIES[kind].load(), random.Random(11)
+    trace = Trace(tmp_path / "calls.jsonl")
+    clients = []
+    for each in (None, trace):
+        device = KINDS[kind](Machinery()).device
+        client = CallClient(
+            lambda *_, device=device: LIBRARIES[kind].make(library, [device], None), trace=each
+        )  # fmt: skip
+        assert client.receive(hello(library.name.encode(), library.table_hash)) == WELCOME
+        clients.append(client)
+    by_name = {each.function.name: each.number for each in library.calls}
+    for name, packed in _OPENING[kind]:
+        asked = struct.pack("<IHH", 4 + len(packed), by_name[name], 7) + packed
+        assert clients[0].receive(asked) == clients[1].receive(asked)
+    codes = set()
+    for call in [each for each in library.calls for _ in range(4)]:
+        packed = b"".join(part for slot in call.slots for part in _argument(slot, dice))
+        if library.through and slot_is_handle(call) and dice.random() < 0.9:
+            packed = struct.pack("<H", 1) + packed[2:]
+        asked = struct.pack("<IHH", 4 + len(packed), call.number, 513) + packed
+        plain, traced = (each.receive(asked) for each in clients)
+        assert plain == traced, call.function.prototype
+        codes |= {code for _, code, _ in answers(plain)}
+    trace.close()
+    caller = clients[0].caller
+    assert caller is not None
+    assert len(caller.quick) > len(library.calls) // 4
+    assert len(codes) > 3
 
 
 def _replayed(path: Path) -> list[tuple[str, bool]]:

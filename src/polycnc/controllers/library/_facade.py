@@ -8,6 +8,7 @@ from collections.abc import Callable, Hashable, Iterable
 from functools import partial
 from typing import Any, ClassVar, Concatenate, Generic, ParamSpec, TypeVar, get_type_hints
 
+from polycnc.controllers.library._c_types import Number, Real
 from polycnc.controllers.library._codes import Refused
 from polycnc.controllers.library._functions import Argument, BadArgument, Function, function_of, passed
 from polycnc.errors import UsageError
@@ -29,10 +30,12 @@ class Session:
     """
 
     calls: ClassVar[dict[str, Callable[..., Any]]]
+    packed_calls: ClassVar[dict[str, Callable[[Any, list[Any]], Any]]]
+    """The same for arguments in a list whose numbers are of the types in C, and within their limits."""
 
     def __init_subclass__(cls) -> None:
         """Give every library its own functions."""
-        cls.calls = {}
+        cls.calls, cls.packed_calls = {}, {}
 
     def __init__(self) -> None:
         self.lock = threading.RLock()
@@ -127,6 +130,7 @@ class Facade(Generic[S]):
         self.functions: dict[str, Function] = {}
         self.default = default
         self._calls = type(default).calls
+        self._packed_calls = type(default).packed_calls
         self._module = module
         self._code = code
 
@@ -172,10 +176,12 @@ class Facade(Generic[S]):
     ) -> Callable[..., Any]:
         function = function_of(body, first, self._code)
         signature = _public(body, first, hint)
-        count, skipped = len(signature.parameters), 0 if first is None else 1
-        takes = [(place, each.take) for place, each in enumerate(function.passed)]
-        before, after = takes[:skipped], takes[skipped:]
+        count = len(signature.parameters)
+        carrier = partial(_carrier, body, function, reach, 0 if first is None else 1, refused)
         default, name = self.default, body.__name__
+
+        arguments = [*enumerate(function.passed)]
+        carry_out = carrier([(place, each.take) for place, each in arguments])
 
         def call(session: S, /, *given: Any, **named: Any) -> Any:
             if named or len(given) != count:
@@ -185,22 +191,7 @@ class Facade(Generic[S]):
                     raise UsageError(f"{name}: {error}", hint=function.prototype) from None
                 bound.apply_defaults()
                 given = bound.args
-            values = list(given)
-            with session.lock:
-                session.refused = False
-                session.asked = (name, *[each for each in given if isinstance(each, _PLAIN)])
-                try:
-                    for place, take in before:
-                        values[place] = take(values[place], session)
-                    to = reach(session, values)
-                    for place, take in after:
-                        values[place] = take(values[place], to)
-                    return body(to, *values[skipped:])
-                except Refused as refusal:
-                    session.refused = True
-                    return function.answer(refusal.code if refused is None else refused, values)
-                except BadArgument as error:
-                    raise UsageError(f"{name}: {error}", hint=function.prototype) from None
+            return carry_out(session, [*given])
 
         def public(*given: Any, **named: Any) -> Any:
             return call(default, *given, **named)
@@ -215,7 +206,46 @@ class Facade(Generic[S]):
         }
         self.functions[name] = function
         self._calls[name] = call
+        self._packed_calls[name] = carrier(
+            [(place, each.take) for place, each in arguments if not isinstance(each.type, Number | Real)]
+        )
         return public
+
+
+def _carrier(
+    body: Callable[..., Any],
+    function: Function,
+    reach: Callable[[Any, list[Any]], Any],
+    skipped: int,
+    refused: int | None,
+    takes: list[tuple[int, Callable[[Any, Any], Any]]],
+) -> Callable[[Any, list[Any]], Any]:
+    """Return what carries a call out with a list of arguments, of which `takes` are converted.
+
+    The first `skipped` say what the call is for, and `body` does not get them.
+    """
+    before = [each for each in takes if each[0] < skipped]
+    after = takes[len(before) :]
+    name = body.__name__
+
+    def carry_out(session: Session, values: list[Any]) -> Any:
+        with session.lock:
+            session.refused = False
+            session.asked = (name, *[each for each in values if isinstance(each, _PLAIN)])
+            try:
+                for place, take in before:
+                    values[place] = take(values[place], session)
+                to = reach(session, values)
+                for place, take in after:
+                    values[place] = take(values[place], to)
+                return body(to, *values[skipped:])
+            except Refused as refusal:
+                session.refused = True
+                return function.answer(refusal.code if refused is None else refused, values)
+            except BadArgument as error:
+                raise UsageError(f"{name}: {error}", hint=function.prototype) from None
+
+    return carry_out
 
 
 def _public(body: Callable[..., Any], first: Argument | None, hint: Any) -> inspect.Signature:

@@ -53,6 +53,7 @@ TARGETS = {
             "-s",
             "-fvisibility=hidden",
             "-pthread",
+            "-ldl",
             "-Wl,-z,nodelete",
         ),  # it may have a thread
         "Install gcc: on Debian, apt-get install gcc.",

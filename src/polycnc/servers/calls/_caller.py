@@ -4,13 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
+from functools import partial
+from itertools import count
 from operator import attrgetter
 from typing import Any, NamedTuple
 
 from polycnc.controllers.library import Opaque, Session, repacked
 from polycnc.controllers.library.clib import Call, CLibrary, Slot, Way, alike, copied, length_in
 from polycnc.errors import UsageError
-from polycnc.servers.calls._frames import NULL, CallError, Done, Given, Layout
+from polycnc.servers.calls._frames import CallError, Done, Given, Layout
+from polycnc.servers.calls._quick import Quick, Take, quick_of
 
 _MOST_HANDLES = 65536  # that a client has ever had
 _CONTENT = attrgetter("content")
@@ -49,8 +52,6 @@ class _Prepared:
     """Whether records are written, of which some may be as before."""
     lengths: tuple[tuple[str, Any, Any], ...] = ()
     """Arguments that count the bytes of a structure that the program packs otherwise: name, its structure, ours."""
-    quick: Callable[[bytes], Done] | None = None
-    """Carries out a call that reads through no pointer, given a frame of the usual size."""
 
 
 @dataclass(slots=True)
@@ -65,6 +66,8 @@ class Caller:
     session: Session
     ways: dict[str, Callable[..., Any]] = field(default_factory=dict)
     listens: bool = False
+    quick: dict[bytes, tuple[int, Quick]] = field(default_factory=dict)
+    """Of calls that have been carried out and read through no pointer, by how their frames begin."""
     push: Callable[[int], None] = lambda _: None
     _handles: dict[int, Any] = field(default_factory=dict)
     _prepared: dict[int, _Prepared] = field(default_factory=dict)
@@ -76,10 +79,7 @@ class Caller:
             CallError: There is no such call, or its arguments are not those of the table; nothing is carried out.
         """
         prepared = self._prepared.get(number) or self._prepare(number)
-        layout, quick = prepared.layout, prepared.quick
-        if quick is not None and len(packed) == layout.whole.size:  # type: ignore[union-attr]
-            return layout, quick(packed)
-        return layout, self._done(prepared, layout.unpacked(packed))
+        return prepared.layout, self._done(prepared, prepared.layout.unpacked(packed))
 
     def carry_out_given(self, call: Call, given: list[Given]) -> Done:
         """Carry out a call whose arguments are there."""
@@ -103,7 +103,7 @@ class Caller:
             any(each.way is Way.RECORDS for each in call.slots),
         )
         made.lengths = tuple(self._lengths(call))
-        made.quick = self._quick(made)
+        self._quicken(made)
         return made
 
     def _lengths(self, call: Call) -> Iterator[tuple[str, Any, Any]]:
@@ -120,20 +120,31 @@ class Caller:
         cls = slot.element.variant_of
         return None if alike(slot.element, cls) else cls
 
-    def _quick(self, prepared: _Prepared) -> Callable[[bytes], Done] | None:
-        """Return what does the same as `_done`, without an object for each argument; None where something is read."""
-        call, whole = prepared.call, prepared.layout.whole
-        if whole is None or prepared.held or prepared.changed or prepared.lengths:
-            return None
-        takes = [self._made(each, k) for k, each in enumerate(call.slots) if each.argument.passed]
-        puts = [(k, each, self._putter(each)) for k, each in enumerate(call.slots) if each.writes]
-        if any(not each.argument.returned and each.way is not Way.RECORD for _, each, _ in puts):
-            return None
+    def _quicken(self, prepared: _Prepared) -> None:
+        """Have the call answered without an object for each argument from now on, unless something is read."""
+        slots = prepared.call.slots
+        if any(each.way is not Way.VALUE and each.reads for each in slots):
+            return
+        if prepared.held or prepared.changed or prepared.lengths:
+            return
+        takes = [self._made(each, k) for k, each in enumerate(slots) if each.argument.passed]
+        if any(not put.slot.argument.returned and put.slot.way is not Way.RECORD for put in prepared.put):
+            return
         filled = {k: number for number, (k, _) in enumerate(takes)}
-        contents = [(k, -1 if each.argument.returned else filled[k], put) for k, each, put in puts]
-        return _quickly(prepared, self.session, takes, contents)
+        results = count(0 if prepared.call.function.result == "void" else 1)
+        puts = [
+            (place, True, next(results), put)
+            if slot.argument.returned
+            else (place, False, filled[place], put)
+            for place, slot, put in prepared.put
+        ]
+        name = prepared.call.function.name
+        way = self.ways.get(name)
+        carry_out = partial(self.session.packed_calls[name], self.session) if way is None else _of_list(way)
+        begin, size, quick = quick_of(prepared.call, carry_out, self.session, prepared.null, takes, puts)
+        self.quick[begin] = size, quick
 
-    def _made(self, slot: Slot, place: int) -> tuple[int, Callable[[Any], Any] | None]:
+    def _made(self, slot: Slot, place: int) -> Take:
         """Return where an argument is, and what makes of it what the façade is given; None of the number itself."""
         if not slot.reads:
             element = slot.element
@@ -260,40 +271,8 @@ class Caller:
         return number
 
 
-def _quickly(
-    prepared: _Prepared,
-    session: Session,
-    takes: list[tuple[int, Callable[[Any], Any] | None]],
-    contents: list[tuple[int, int, Callable[[Any], bytes]]],
-) -> Callable[[bytes], Done]:
-    """Return what carries out a call: `takes` are its arguments, `contents` its outputs, the result's own as -1."""
-    whole, function = prepared.layout.whole, prepared.function
-    assert whole is not None
-    places = [place for place, _, _ in contents]
-    name, null = prepared.call.function.name, prepared.null
-    is_void = prepared.call.function.result == "void"
-
-    def quick(packed: bytes) -> Done:
-        values = whole.unpack(packed)
-        for place in places:
-            if values[place] == NULL:
-                return Done(name, null, [], True)
-        given = [values[place] if made is None else made(values[place]) for place, made in takes]
-        session.refused = False
-        try:
-            answer = function(*given)
-        except UsageError:
-            return Done(name, null, [], True)
-        results = iter(answer if isinstance(answer, tuple) else (answer,))
-        code = None if is_void else next(results)
-        if session.refused:
-            return Done(name, code, [], True)
-        outputs = [
-            put(next(results) if at < 0 else given[at])[: values[place]] for place, at, put in contents
-        ]
-        return Done(name, code, outputs)
-
-    return quick
+def _of_list(way: Callable[..., Any]) -> Callable[[list[Any]], Any]:
+    return lambda given: way(*given)
 
 
 def _inner(slot: Slot, content: bytes) -> Any:

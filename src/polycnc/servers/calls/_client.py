@@ -8,21 +8,19 @@ from dataclasses import dataclass, field
 
 from polycnc.controllers.library.clib import CLibrary
 from polycnc.servers.calls._caller import Caller
-from polycnc.servers.calls._frames import CallError
+from polycnc.servers.calls._frames import HEAD, MOST, SIZE, CallError
+from polycnc.servers.calls._quick import BEGIN, Quick
 from polycnc.servers.calls._trace import Trace
 from polycnc.servers.machines import AS_USUAL, Treatment
 
 MAGIC = b"PNCCALL1"
 _HELLO = struct.Struct("<8sBBH16s16s16s")
 _WELCOME = struct.Struct("<8si")
-_SIZE = struct.Struct("<I")
-_HEAD = struct.Struct("<IHH")
 _INTERRUPT = struct.Struct("<IHHi")
-_BEGIN = _HEAD.size
-_LEAST = _HEAD.size - _SIZE.size
-_MOST = 66_560
-_MOST_BEHIND = 4 * _MOST  # bytes that wait to be carried out
+_LEAST = HEAD.size - SIZE.size
+_MOST_BEHIND = 4 * MOST  # bytes that wait to be carried out
 _WIDTHS = (4, 8)
+_NOT_QUICK = (0, None)
 
 
 @dataclass(frozen=True, slots=True)
@@ -82,6 +80,8 @@ class CallClient:
         sent: list[bytes] = []
         try:
             if not self._behind:
+                if (quick := self._quick(data)) is not None:
+                    return quick(data) if self._is_treated() else b""
                 at = self._go(data, sent)
                 if at != len(data):
                     self._behind += data[at:]
@@ -94,6 +94,13 @@ class CallClient:
             self.tell(str(error))
             self.ended = True
         return sent[0] if len(sent) == 1 else b"".join(sent)
+
+    def _quick(self, data: bytes) -> Quick | None:
+        """Return what answers bytes that are one whole frame of a call that has a quick way."""
+        if self.caller is None or self.trace is not None:
+            return None
+        size, quick = self.caller.quick.get(data[:BEGIN], _NOT_QUICK)
+        return quick if size == len(data) else None
 
     def _go(self, there: bytes | bytearray, sent: list[bytes]) -> int:
         """Answer one whole thing after the other; return how many bytes they had.
@@ -111,15 +118,15 @@ class CallClient:
                 sent.append(self._welcomed(bytes(there[: _HELLO.size])))
                 at = _HELLO.size
                 continue
-            if most - at < _BEGIN:
-                if most - at >= _SIZE.size:
-                    _checked(*_SIZE.unpack_from(there, at))
+            if most - at < HEAD.size:
+                if most - at >= SIZE.size:
+                    _checked(*SIZE.unpack_from(there, at))
                 break
-            size, number, serial = _HEAD.unpack_from(there, at)
+            size, number, serial = HEAD.unpack_from(there, at)
             end = at + _checked(size)
             if most < end:
                 break
-            answer = self._answered(self.caller, number, serial, bytes(there[at + _BEGIN : end]))
+            answer = self._answered(self.caller, number, serial, bytes(there[at + HEAD.size : end]))
             if answer is None:
                 break
             sent.append(answer)
@@ -128,16 +135,22 @@ class CallClient:
 
     def _answered(self, caller: Caller, number: int, serial: int, packed: bytes) -> bytes | None:
         """Carry out a call and return its answer; None if it is dropped."""
-        treatment = self.treat()
-        if treatment.drop:
-            self.ended = True
+        if not self._is_treated():
             return None
-        if treatment.delay_s > self.delay_s:
-            self.delay_s = treatment.delay_s
         layout, done = caller.carry_out(number, packed)
         if self.trace is not None:
             self.trace.write(self.now_s(), self.number, layout.unpacked(packed), done)
-        return layout.answered(serial, done, _MOST - _SIZE.size)
+        return layout.answered(serial, done)
+
+    def _is_treated(self) -> bool:
+        """Count a call, and tell whether it is carried out."""
+        treatment = self.treat()
+        if treatment.drop:
+            self.ended = True
+            return False
+        if treatment.delay_s > self.delay_s:
+            self.delay_s = treatment.delay_s
+        return True
 
     def _welcomed(self, said: bytes) -> bytes:
         """Answer a hello: with 0, or with the code that every call gets."""
@@ -151,7 +164,7 @@ class CallClient:
             self.ended = True
             return _WELCOME.pack(MAGIC, caller.library.version)
         self.caller = caller
-        caller.push = lambda lines: self.push(_INTERRUPT.pack(_INTERRUPT.size - _SIZE.size, 0, 0, lines))
+        caller.push = lambda lines: self.push(_INTERRUPT.pack(_INTERRUPT.size - SIZE.size, 0, 0, lines))
         self.number = 0 if self.trace is None else self.trace.next_client()
         return _WELCOME.pack(MAGIC, 0)
 
@@ -162,9 +175,9 @@ def _checked(size: int) -> int:
     Raises:
         CallError: They are too few or too many.
     """
-    if not _LEAST <= size <= _MOST - _SIZE.size:
+    if not _LEAST <= size <= MOST - SIZE.size:
         raise CallError(f"a frame of {size} bytes")
-    return _SIZE.size + size
+    return SIZE.size + size
 
 
 def _unfit(hello: Hello, library: CLibrary) -> str:

@@ -9,9 +9,13 @@ from typing import Any, NamedTuple
 from polycnc.controllers.library.clib import Call, Slot, Way
 
 NULL = 0xFFFFFFFF
-_SIZE = struct.Struct("<I")
+MOST = 66_560
+"""Bytes of a frame."""
+SIZE = struct.Struct("<I")
+HEAD = struct.Struct("<IHH")
+"""How many bytes follow, the number of the call, its serial number."""
+CARRIED_OUT, REFUSED = 0, 1
 _DOUBLE = 8
-_CARRIED_OUT, _REFUSED = 0, 1
 _FORMATS = {1: "b", 2: "h", 4: "i", 8: "q"}
 
 
@@ -39,16 +43,13 @@ class Done:
 
 
 class Layout:
-    """How the arguments of a call lie in a frame; most calls read through no pointer and have frames of one size."""
+    """How the arguments of a call lie in a frame."""
 
     def __init__(self, call: Call) -> None:
         self.call = call
-        plain = all(each.way is Way.VALUE or not each.reads for each in call.slots)
         self._values = [
-            struct.Struct(f"<{_format(each)}") if each.way is Way.VALUE else _SIZE for each in call.slots
+            struct.Struct(f"<{form_of(each)}") if each.way is Way.VALUE else SIZE for each in call.slots
         ]
-        self.whole = struct.Struct("<" + "".join(map(_format, call.slots))) if plain else None
-        """The form of frames of one size, None if there is none."""
         self._written = sum(each.writes for each in call.slots)
         result = "d" if call.function.result == "double" else "q"
         self._answer = struct.Struct(f"<IHHI{result}{self._written}I")
@@ -59,31 +60,6 @@ class Layout:
         Raises:
             CallError: They are not as long as they have to be.
         """
-        if self.whole is None or self.whole.size != len(packed):
-            return self._one_by_one(packed)
-        return [
-            Given(slot, each, 0)
-            if slot.way is Way.VALUE
-            else Given(slot, b"", None if each == NULL else each)
-            for slot, each in zip(self.call.slots, self.whole.unpack(packed), strict=True)
-        ]
-
-    def answered(self, serial: int, done: Done, most: int) -> bytes:
-        """Return the answer to a call: state, result, the sizes of all outputs, the outputs.
-
-        Raises:
-            CallError: It is longer than `most` bytes.
-        """
-        outputs = done.outputs or [b""] * self._written
-        sizes = [*map(len, outputs)]
-        size = self._answer.size - _SIZE.size + sum(sizes)
-        if size > most:
-            raise CallError(f"the answer to {done.name} has {size} bytes")
-        state = _REFUSED if done.refused else _CARRIED_OUT
-        head = self._answer.pack(size, self.call.number, serial, state, done.code or 0, *sizes)
-        return head + b"".join(outputs)
-
-    def _one_by_one(self, packed: bytes) -> list[Given]:
         at = 0
         given: list[Given] = []
         for slot, value in zip(self.call.slots, self._values, strict=True):
@@ -95,12 +71,12 @@ class Layout:
             room: int | None = 0
             if slot.reads:
                 size = self._size(packed, at)
-                at += _SIZE.size
+                at += SIZE.size
                 content = None if size is None else packed[at : at + size]
                 at += size or 0
             if slot.writes:
                 room = self._size(packed, at)
-                at += _SIZE.size
+                at += SIZE.size
             given.append(Given(slot, content, room))
         if at > len(packed):
             raise self._cut(packed)
@@ -108,9 +84,24 @@ class Layout:
             raise CallError(f"{self.call.function.name} is followed by {len(packed) - at} bytes")
         return given
 
+    def answered(self, serial: int, done: Done) -> bytes:
+        """Return the answer to a call: state, result, the sizes of all outputs, the outputs.
+
+        Raises:
+            CallError: It is too long.
+        """
+        outputs = done.outputs or [b""] * self._written
+        sizes = [*map(len, outputs)]
+        size = self._answer.size - SIZE.size + sum(sizes)
+        if size > MOST - SIZE.size:
+            raise CallError(f"the answer to {done.name} has {size} bytes")
+        state = REFUSED if done.refused else CARRIED_OUT
+        head = self._answer.pack(size, self.call.number, serial, state, done.code or 0, *sizes)
+        return head + b"".join(outputs)
+
     def _size(self, packed: bytes, at: int) -> int | None:
         """Return a size in a frame; None of a null pointer."""
-        found: int = self._number(_SIZE, packed, at)
+        found: int = self._number(SIZE, packed, at)
         return None if found == NULL else found
 
     def _number(self, form: struct.Struct, packed: bytes, at: int) -> Any:
@@ -122,7 +113,7 @@ class Layout:
         return CallError(f"{self.call.function.name} is cut at byte {len(packed)}")
 
 
-def _format(slot: Slot) -> str:
+def form_of(slot: Slot) -> str:
     """Return the format of a number: a float, or so many bytes with a sign or without; of a pointer, its size."""
     if slot.way is not Way.VALUE:
         return "I"

@@ -127,6 +127,7 @@ class _Line(asyncio.BufferedProtocol):
     def __init__(self, server: CallsServer) -> None:
         self._server = server
         self._machines: list[ServedMachine] = []
+        self._others: list[ServedMachine] = []  # but the first
         self._client = CallClient(self._find, server.tell, server.trace, self._now_s, self._treat, self._push)
         self._attention: asyncio.TimerHandle | None = None
         self._later: asyncio.TimerHandle | None = None
@@ -140,15 +141,16 @@ class _Line(asyncio.BufferedProtocol):
         if found is None:
             return None
         caller, self._machines = found
+        self._others = self._machines[1:]
         return caller
 
     def _now_s(self) -> float:
         return self._machines[0].device.clock.now_s if self._machines else 0.0
 
     def _treat(self) -> Treatment:
-        found = [each.treat("calls") for each in self._machines if not each.is_usual]
-        if not found:
+        if self._machines[0].is_usual and not self._others:
             return AS_USUAL
+        found = [each.treat("calls") for each in self._machines]
         return Treatment(any(each.drop for each in found), max(each.delay_s for each in found))
 
     def connection_made(self, transport: asyncio.BaseTransport) -> None:
@@ -194,7 +196,7 @@ class _Line(asyncio.BufferedProtocol):
         if not self._machines:  # a hello reaches no machine
             self._send(self._client.receive(data))
             return
-        for each in self._machines[1:]:
+        for each in self._others:
             each.keeper.submit(lambda: None, lambda _: None)  # lets its time pass
         if not self._machines[0].keeper.submit(partial(self._client.receive, data), self._send):
             self.abort()

@@ -22,6 +22,7 @@ _MOST_CYCLES = 20_000  # that are caught up with in one go
 _MOST_LATE_S = 0.5
 _REST = 9.0  # times what catching up has cost, in which requests find the device as it is
 _MOST_REST_S = 0.005
+_EARLY = 1.0 - 1e-6  # what rounding may make of the time to the next cycle
 
 
 class Owner(Protocol):
@@ -74,9 +75,9 @@ class Keeper:
 
     Time is let pass before a request and, from `start` on, from time to time, for at most `share_s` of the wall clock
     in one go, so that nobody waits long for others whose time is costly. Requests that follow each other closely find
-    the device as it is for nine times what catching up has cost, at most 5 ms: then it costs a tenth of the time, and
-    not a cycle for each of them. Keepers of one event loop share its `turns`: requests come before time. A clock that
-    is late by half a second drops its lag and tells `on_late` how much.
+    the device as it is while no cycle is due, and for nine times what catching up has cost, at most 5 ms: then it costs
+    a tenth of the time, and not a cycle for each of them. Keepers of one event loop share its `turns`: requests come
+    before time. A clock that is late by half a second drops its lag and tells `on_late` how much.
     `failed` ends with the error if time cannot pass.
     """
 
@@ -153,6 +154,8 @@ class Keeper:
         if not whole and 0 < beat <= due < _MOST_CYCLES:
             due -= (clock.cycles + due) % beat
         if not due:
+            wait_s = self.pace.wait_s(clock.cycle_s, 1) * _EARLY
+            self._rests_until_s = self._wall.now_s() + min(wait_s, _MOST_REST_S)
             return False
         begin_s = self._wall.now_s()
         end_s = begin_s + self._share_s

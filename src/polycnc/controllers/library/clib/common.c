@@ -4,13 +4,13 @@
 #include <winsock2.h>
 #include <ws2tcpip.h>
 #else
-#define _POSIX_C_SOURCE 200809L
-#define _DEFAULT_SOURCE 1
+#define _GNU_SOURCE 1 /* dladdr */
 #define _DARWIN_C_SOURCE 1
 #ifdef PC_IN_PROCESS
 #define PY_SSIZE_T_CLEAN
 #include <Python.h>
 #endif
+#include <dlfcn.h>
 #include <errno.h>
 #include <fcntl.h>
 #include <netdb.h>

@@ -120,23 +120,41 @@ static void pc_begin(void)
 }
 #endif
 
-/* Read the line calls = "host:port" of polycnc.toml beside the program. */
-static int pc_read_file(char *place, size_t room)
+/* The path of the program, or of this library; 0 if it is unknown or too long. */
+static int pc_path(int of_library, char *path, size_t room)
+{
+#ifdef _WIN32
+    HMODULE module = NULL;
+    DWORD size, flags = GET_MODULE_HANDLE_EX_FLAG_FROM_ADDRESS | GET_MODULE_HANDLE_EX_FLAG_UNCHANGED_REFCOUNT;
+    if (of_library && !GetModuleHandleExA(flags, (const char *)&pc_all, &module))
+        return 0;
+    size = GetModuleFileNameA(module, path, (DWORD)room);
+    return size > 0 && size < room;
+#else
+    Dl_info found;
+    ssize_t size;
+    if (of_library)
+        return dladdr(&pc_all, &found) && found.dli_fname && (size_t)snprintf(path, room, "%s", found.dli_fname) < room;
+    size = readlink("/proc/self/exe", path, room);
+    if (size <= 0 || (size_t)size >= room)
+        return 0;
+    path[size] = 0;
+    return 1;
+#endif
+}
+
+/* Read the line calls = "host:port" of polycnc.toml beside the program, or beside this library. */
+static int pc_read_file(int of_library, char *place, size_t room)
 {
     char path[1100], line[400], value[280];
     char *slash;
     FILE *file;
     int found = 0;
-#ifdef _WIN32
-    DWORD size = GetModuleFileNameA(NULL, path, 1000);
-    if (!size || size >= 1000)
+    if (!pc_path(of_library, path, 1000))
         return 0;
+#ifdef _WIN32
     slash = strrchr(path, '\\');
 #else
-    ssize_t size = readlink("/proc/self/exe", path, 1000);
-    if (size <= 0 || size >= 1000)
-        return 0;
-    path[size] = 0;
     slash = strrchr(path, '/');
 #endif
     if (!slash)
@@ -159,7 +177,7 @@ static void pc_where(char *place, size_t room)
     const char *said = getenv("POLYCNC_CALLS");
     if (said && *said)
         snprintf(place, room, "%s", said);
-    else if (!pc_read_file(place, room))
+    else if (!pc_read_file(0, place, room) && !pc_read_file(1, place, room))
         snprintf(place, room, "127.0.0.1:" PC_PORT);
 }
 
