@@ -12,7 +12,7 @@ from pathlib import Path
 import numpy as np
 
 from polycnc.kernel import PATH_RESTED, advance, give_to_path, prepare_path, start_path
-from polycnc.kernel._ramps import LENGTH, SPEED_IN, SPEED_OUT, SPEED_PEAK, TIME_CRUISE, TIME_IN, TIME_OUT
+from polycnc.kernel._path import LENGTH, SPEED_IN, SPEED_OUT, SPEED_PEAK, TIME_CRUISE, TIME_IN, TIME_OUT
 from polycnc.machine import Machine, load_machine
 from polycnc.nc import Channel, ChannelOptions, ProgramText, dialect_for
 from polycnc.nc.modal._modal import ABSOLUTE, FEED, MOTION

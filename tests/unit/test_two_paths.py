@@ -12,6 +12,7 @@ from polycnc.kernel import (
     advance,
     append_line,
     append_wait,
+    free_slots,
     give_to_path,
     make_state,
     prepare_path,
@@ -46,8 +47,7 @@ def queue(state: KernelState, g: int) -> None:
         end = np.array([x, y, 0.0, 0.0])
         assert append_line(state.seg, state.paths, g, state.limits, end, FEEDS[g], 0, tag)
     append_wait(state.seg, state.paths, g, 0.04, -1, 9, 0)
-    row = state.paths.row[g]
-    assert row["capacity"] - row["tail"] == 6 - len(ENDS[g]) - 1
+    assert free_slots(state.paths, g) == 6 - len(ENDS[g]) - 1
     state.paths.row[g]["closed"] = 1
     prepare_path(state.seg, state.paths, g, state.limits, CYCLE_S, state.work)
     start_path(state.paths, g)

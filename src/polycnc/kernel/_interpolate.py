@@ -53,7 +53,6 @@ from polycnc.kernel._path import (
 )
 from polycnc.kernel._ramps import (
     MOST_SHARE,
-    Floats,
     beside_corner,
     halting_distance,
     plan_pause,
@@ -61,7 +60,7 @@ from polycnc.kernel._ramps import (
     ramps_at,
     set_pieces,
 )
-from polycnc.kernel._segments import WAIT, WAIT_EVENT, WAIT_PASSES, Segments
+from polycnc.kernel._segments import WAIT, WAIT_EVENT, WAIT_PASSES, Floats, Segments
 from polycnc.kernel._segments import WAIT_S as GEO_WAIT_S
 from polycnc.kernel._totals import account_time, leave_segment
 

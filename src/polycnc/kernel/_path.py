@@ -193,6 +193,11 @@ def start_path(paths: Paths, g: int) -> None:
         paths.row[g]["state"] = READY
 
 
+def free_slots(paths: Paths, g: int) -> int:
+    """Return how many segments path `g` still takes."""
+    return int(paths.row[g]["capacity"] - (paths.row[g]["tail"] - paths.row[g]["head"]))
+
+
 @compiled
 def is_held(path: np.void, row: np.void) -> bool:
     """Tell whether a path may not follow the segment of this row; an override of 0 leaves waits alone."""

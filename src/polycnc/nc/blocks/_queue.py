@@ -24,6 +24,7 @@ from polycnc.kernel import (
     append_spline,
     append_wait,
     close_line,
+    free_slots,
     merge_line,
 )
 from polycnc.nc.blocks._events import Event, EventRun, PendingEvents
@@ -156,8 +157,7 @@ class QueueWriter:
     @property
     def free(self) -> int:
         """How many segments the queue still takes."""
-        row = self.paths.row[self.path]
-        return int(row["capacity"] - (row["tail"] - row["head"]))
+        return free_slots(self.paths, self.path)
 
     def has_room(self, reserve: int) -> bool:
         """Tell whether blocks may be prepared: nothing waits for room, and no stop for its execution."""
