@@ -131,6 +131,10 @@ def test_a_register_by_axis_number_is_returned_and_written(
     before = read(0), read(2)
 
     assert read(1) == planned
+    if isinstance(written, int):
+        for word in (-(1 << 31), -2, 1 << 30):  # every bit, also the highest
+            write(1, word)
+            assert read(1) == word
     write(1, written)
     assert read(1) == written
     assert type(read(1)) is type(written)

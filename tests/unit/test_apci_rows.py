@@ -568,6 +568,30 @@ def test_a_queued_move_begins_with_its_velocity_at_once_under_an_override(overri
     pcap.detach()
 
 
+@pytest.mark.covers("apci.ErrorReg.10.SsfWaitRefused", "apci.ssf", "apci.ssf.waitnotes", "apci.LMP.tvl")
+@pytest.mark.parametrize(
+    "command",
+    [
+        pytest.param(number, marks=pytest.mark.covers(f"apci.ssf.{number}"))
+        for number in (1000, 1003, 1004, 1005, 1006, 1015, 1025)
+    ],
+)
+def test_a_wait_behind_a_move_that_ends_at_speed_is_dropped(command: int) -> None:
+    for tvl, refused in ((12.0, True), (-12.0, True), (0.0, False)):
+        pc = Pc()
+        axes = pc.close(1)
+        pcap.smlr(axes, pcap.LMP(ac=2000.0, vl=20.0, tvl=tvl, dtm=[0.0, 2.0]))
+        pcap.ssf(1, command, 6.0 if command == 1006 else 5000.0)
+        pcap.ssf(1, 77, 6.0)
+        pcap.ssms(axes)
+        pc.board.advance(200)
+        pcap.rdci(100, found := pcap.CIBUF())
+        assert (pcap.rdErrorReg(), found.ci[77], found.ci[99]) == (
+            (0x400, 6, 0) if refused else (0, 0, {1005: 5000, 1015: 5000, 1025: 2}.get(command, 0))
+        )
+        pcap.detach()
+
+
 UNITS = {"mm": (0, 1.0), "inch": (1, 25.4), "m": (2, 1000.0), "counts": (6, 1e-3), "steps": (7, 1e-3)}
 
 
@@ -594,6 +618,58 @@ def test_ms_brakes_with_trac_in_the_units_of_interpolation(name: str) -> None:
         scans = pc.scans_until_rest()
         assert velocity == near(50.8)
         assert (scans, pc.rp(0) - begun) == (157, near(5.08))  # 0.2 s, v * v / (2 * a)
+    pcap.detach()
+
+
+def profile(pc: Pc, scans: int) -> list[tuple[float, float]]:
+    """Let scans pass and return the velocities of two axes after each."""
+    seen = []
+    for _ in range(scans):
+        pc.board.advance(1)
+        seen.append((pc.dv(0), pc.dv(1)))
+    return seen
+
+
+@pytest.mark.covers("apci.wrMaxVel", "apci.wrMaxAcc", "apci.wrMDVel", "apci.sstvl", "apci.var.MaxVel")
+@pytest.mark.covers(
+    "apci.var.MaxAcc", "apci.var.MDVEL", "apci.MODEREG.7.maxcheck", "apci.MODEREG.0.lookahead"
+)
+@pytest.mark.covers("apci.rule.lookahead", "apci.ctru", "apci.TRU", "apci.smlr", "apci.LMP")
+@pytest.mark.parametrize("tu", range(3))
+@pytest.mark.parametrize("name", ["mm", "inch", "counts"])
+def test_limits_of_axes_are_in_the_units_of_interpolation(name: str, tu: int) -> None:
+    pu, unit_mm = UNITS[name]
+    time_s = (1.0, 60.0, 0.00128)[tu]
+    pc = Pc("[[axis]]\nslsp = 2000.0\ngf = 0.5\n" * 2)  # 1000 counts/mm
+    axes = pc.close(0, 1)
+    pcap.ctru(pcap.TRU(pu=pu, tu=tu))
+    velocity, acceleration = time_s / unit_mm, time_s**2 / unit_mm
+
+    def queue(x: float, y: float, ac: float, vl: float, tvl: float) -> None:
+        speeds = {"ac": ac * acceleration, "vl": vl * velocity, "tvl": tvl * velocity}
+        pcap.smlr(axes, pcap.LMP(**speeds, dtm=[x / unit_mm, y / unit_mm]))
+
+    pcap.wrModeReg(0x80)
+    pcap.wrMaxVel(0, 12.5 * velocity)
+    pcap.wrMaxAcc(1, 160.0 * acceleration)
+    queue(6.0, 8.0, 1000.0, 90.0, 0.0)  # 20.8333 mm/s and 200 mm/s2 along the path
+    pcap.sstvl(axes, 7.5 * velocity)
+    pcap.ssms(axes)
+    seen = profile(pc, 700)
+    assert max(x for x, _ in seen) == near(12.5)
+    assert seen[60] == (near(seen[59][0] + 120.0 * 0.00128), near(seen[59][1] + 160.0 * 0.00128))
+    assert seen[-1] == (near(4.5), near(6.0))
+    pcap.js(axes)
+    pc.scans_until_rest()
+    pcap.wrModeReg(0x1)
+    pcap.wrMDVel(0, 6.5 * velocity)
+    queue(3.0, 0.0, 500.0, 30.0, 30.0)
+    queue(0.0, 3.0, 500.0, 30.0, 0.0)
+    pcap.ssms(axes)
+    seen = profile(pc, 300)
+    corner = next(k for k, (_, y) in enumerate(seen) if y > 0.0)
+    assert 6.5 <= seen[corner - 1][0] < 6.5 + 500.0 * 0.00128
+    assert 6.5 <= seen[corner][1] < 6.5 + 500.0 * 0.00128
     pcap.detach()
 
 
