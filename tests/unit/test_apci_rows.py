@@ -621,6 +621,34 @@ def test_ms_brakes_with_trac_in_the_units_of_interpolation(name: str) -> None:
     pcap.detach()
 
 
+@pytest.mark.covers("apci.CMP.tvl", "apci.HMP.tvl", "apci.HMP3D.tvl", "apci.profile.target_velocity")
+@pytest.mark.covers("apci.profile.move.case.negative_target_velocity")
+@pytest.mark.parametrize(
+    "name",
+    [
+        pytest.param(way + name, marks=pytest.mark.covers(f"apci.{way}{name}"))
+        for way in ("", "s")
+        for name in ("mca", "mcr", "mha", "mhr", "mca3d", "mcr3d")
+    ],
+)
+def test_a_circle_ends_with_its_target_velocity_of_either_sign(name: str) -> None:
+    kind = pcap.HMP3D if name.endswith("3d") else pcap.HMP if "mh" in name else pcap.CMP
+    for tvl in (6.0, -6.0):
+        pc = Pc()
+        axes = pc.close(0, 1, 2)
+        record = kind(ac=900.0, vl=20.0, tvl=tvl, phi=90.0, dtca1=-2.0, dtca2=0.0)
+        if isinstance(record, pcap.HMP3D):
+            record.pn3 = 1.0
+        getattr(pcap, name)(axes, record)  # a quarter about (-2, 0), to (-2, 2)
+        if name.startswith("s"):
+            pcap.ssms(axes)
+        pc.board.advance(4)
+        pc.scans_until_rest()
+        assert (pc.dv(0), pc.dv(1), pc.dv(2)) == (near(-tvl), near(0.0, abs=1e-6), 0.0)
+        assert (pc.rp(0), pc.rp(1)) == (near(-2.0, abs=0.02), near(2.0))
+        pcap.detach()
+
+
 def profile(pc: Pc, scans: int) -> list[tuple[float, float]]:
     """Let scans pass and return the velocities of two axes after each."""
     seen = []
