@@ -649,26 +649,30 @@ def test_a_circle_ends_with_its_target_velocity_of_either_sign(name: str) -> Non
         pcap.detach()
 
 
+IN_MINUTES = '[[axis]]\ntime_unit = "min"\nslsp = 2000.0\ngf = 0.5\n'  # 1000 counts/mm
+SCAN_900_S = 0.0009
+
+
 def profile(pc: Pc, scans: int) -> list[tuple[float, float]]:
-    """Let scans pass and return the velocities of two axes after each."""
+    """Let scans pass and return the velocities of two axes after each, in mm/s."""
     seen = []
     for _ in range(scans):
         pc.board.advance(1)
-        seen.append((pc.dv(0), pc.dv(1)))
+        seen.append((pc.dv(0) / 60.0, pc.dv(1) / 60.0))
     return seen
 
 
+@pytest.mark.covers("apci.rdMaxVel", "apci.rdMaxAcc", "apci.TRU.tu", "apci.tu.min", "apci.tu.tsample")
 @pytest.mark.covers("apci.wrMaxVel", "apci.wrMaxAcc", "apci.wrMDVel", "apci.sstvl", "apci.var.MaxVel")
 @pytest.mark.covers(
     "apci.var.MaxAcc", "apci.var.MDVEL", "apci.MODEREG.7.maxcheck", "apci.MODEREG.0.lookahead"
 )
 @pytest.mark.covers("apci.rule.lookahead", "apci.ctru", "apci.TRU", "apci.smlr", "apci.LMP")
-@pytest.mark.parametrize("tu", range(3))
-@pytest.mark.parametrize("name", ["mm", "inch", "counts"])
+@pytest.mark.parametrize(("name", "tu"), [("mm", 1), ("inch", 2), ("counts", 0)])
 def test_limits_of_axes_are_in_the_units_of_interpolation(name: str, tu: int) -> None:
     pu, unit_mm = UNITS[name]
-    time_s = (1.0, 60.0, 0.00128)[tu]
-    pc = Pc("[[axis]]\nslsp = 2000.0\ngf = 0.5\n" * 2)  # 1000 counts/mm
+    time_s = (1.0, 60.0, SCAN_900_S)[tu]
+    pc = Pc(f"sample_time_us = 900\n{IN_MINUTES}{IN_MINUTES}")
     axes = pc.close(0, 1)
     pcap.ctru(pcap.TRU(pu=pu, tu=tu))
     velocity, acceleration = time_s / unit_mm, time_s**2 / unit_mm
@@ -683,9 +687,10 @@ def test_limits_of_axes_are_in_the_units_of_interpolation(name: str, tu: int) ->
     queue(6.0, 8.0, 1000.0, 90.0, 0.0)  # 20.8333 mm/s and 200 mm/s2 along the path
     pcap.sstvl(axes, 7.5 * velocity)
     pcap.ssms(axes)
-    seen = profile(pc, 700)
+    assert (pcap.rdMaxVel(0), pcap.rdMaxAcc(1)) == (12.5 * velocity, 160.0 * acceleration)
+    seen = profile(pc, 950)
     assert max(x for x, _ in seen) == near(12.5)
-    assert seen[60] == (near(seen[59][0] + 120.0 * 0.00128), near(seen[59][1] + 160.0 * 0.00128))
+    assert seen[60] == (near(seen[59][0] + 120.0 * SCAN_900_S), near(seen[59][1] + 160.0 * SCAN_900_S))
     assert seen[-1] == (near(4.5), near(6.0))
     pcap.js(axes)
     pc.scans_until_rest()
@@ -694,10 +699,10 @@ def test_limits_of_axes_are_in_the_units_of_interpolation(name: str, tu: int) ->
     queue(3.0, 0.0, 500.0, 30.0, 30.0)
     queue(0.0, 3.0, 500.0, 30.0, 0.0)
     pcap.ssms(axes)
-    seen = profile(pc, 300)
+    seen = profile(pc, 450)
     corner = next(k for k, (_, y) in enumerate(seen) if y > 0.0)
-    assert 6.5 <= seen[corner - 1][0] < 6.5 + 500.0 * 0.00128
-    assert 6.5 <= seen[corner][1] < 6.5 + 500.0 * 0.00128
+    assert 6.5 <= seen[corner - 1][0] < 6.5 + 500.0 * SCAN_900_S
+    assert 6.5 <= seen[corner][1] < 6.5 + 500.0 * SCAN_900_S
     pcap.detach()
 
 
