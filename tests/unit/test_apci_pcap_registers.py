@@ -173,8 +173,9 @@ def test_a_variable_of_the_board_with_a_status(pc: Pc, stem: str, planned: float
     read, write = getattr(pcap, f"rd{stem}"), getattr(pcap, f"wr{stem}")
 
     assert read() == (0, planned)
-    assert write(written) == 0
-    assert read() == (0, written)
+    for value in (written, 0.0, written / 3.0):
+        assert write(value) == 0
+        assert read() == (0, value)
 
 
 @pytest.mark.covers(
