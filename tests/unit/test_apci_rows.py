@@ -649,6 +649,36 @@ def test_a_circle_ends_with_its_target_velocity_of_either_sign(name: str) -> Non
         pcap.detach()
 
 
+@pytest.mark.covers(
+    "apci.profile.move.preconditions", "apci.profile.acceleration", "apci.profile.max_velocity"
+)
+@pytest.mark.covers("apci.axst.8.dhef", "apci.rule.dhef_reset")
+@pytest.mark.parametrize(
+    "kind",
+    [
+        pytest.param(kind, marks=pytest.mark.covers(f"apci.{kind}.ac", f"apci.{kind}.vl"), id=kind)
+        for kind in ("LMP", "CMP", "HMP", "HMP3D")
+    ],
+)
+def test_a_record_with_a_negative_acceleration_or_velocity_is_discarded(kind: str) -> None:
+    record = getattr(pcap, kind)
+    stem = {"LMP": "mlr", "CMP": "mcr", "HMP": "mhr", "HMP3D": "mcr3d"}[kind]
+    shape = {"dtm": [2.0, 1.0, 1.0]} if kind == "LMP" else {"phi": 90.0, "dtca1": -2.0}
+    shape = shape | {"pn3": 1.0} if kind == "HMP3D" else shape
+    pc = Pc()
+    for name in (stem, f"s{stem}"):
+        for ac, vl in ((-900.0, 20.0), (900.0, -20.0)):
+            axes = pc.close(0, 1, 2)
+            assert [pcap.rdaxstb(an, 9) for an in range(3)] == [0, 0, 0]
+            getattr(pcap, name)(axes, record(ac=ac, vl=vl, **shape))
+            assert [pcap.rdaxstb(an, 9) for an in range(3)] == [1, 1, kind != "CMP"]
+            pcap.ssms(axes)
+            pc.board.advance(8)
+            assert [(pc.rp(an), pcap.rdMCiS(an)) for an in range(3)] == [(0.0, 0)] * 3
+            pcap.ra(axes)
+    pcap.detach()
+
+
 IN_MINUTES = '[[axis]]\ntime_unit = "min"\nslsp = 2000.0\ngf = 0.5\n'  # 1000 counts/mm
 SCAN_900_S = 0.0009
 
