@@ -438,6 +438,7 @@ def test_the_old_transfer_takes_no_drive_or_folder(folder: Path) -> None:
     "apci.getEnvStr.ret.minus1",
     "apci.getEnvStr.ret.minus4",
     "apci.CppString",
+    "apci.rule.versions",
 )
 def test_an_environment_string_replaces_its_name(folder: Path) -> None:
     application, slot, _board = booted(folder)

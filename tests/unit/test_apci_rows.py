@@ -218,6 +218,7 @@ def test_what_keeps_the_board_from_being_reached_has_its_number(
 
 @pytest.mark.covers("apci.txbf2", "apci.txbf", "apci.InitMcuSystem.ret.lderr", "apci.file.system_dat")
 @pytest.mark.covers(*(f"apci.txbf2.ret.{code}" for code in (0, 20, 21, 22, 23, 24, 25)))
+@pytest.mark.covers("apci.BoardType.32", "apci.InitMcuSystem3", "apci.mcuinit", "apci.ROSI.sysfile_loaded")
 def test_what_a_transfer_returns_and_what_initialising_passes_on(two: TwoBoards, tmp_path: Path) -> None:
     files = {
         "b.dat": (b"[[axis]]\nspeed = 1\n", 24),
@@ -558,7 +559,7 @@ def test_a_queued_move_begins_with_its_velocity_at_once_under_an_override(overri
     pcap.smlr(axes, pcap.LMP(ac=1000.0, vl=20.0, tvl=20.0, dtm=[0.6, 0.8]))
     pcap.smlr(axes, pcap.LMP(ac=1000.0, vl=8.0, dtm=[0.6, 0.8]))
     pcap.ssms(axes)
-    seen = []
+    seen: list[float] = []
     while not pcap.rdaxstb(0, 13) or not seen:
         pc.board.advance(1)
         seen.append(round((pc.dv(0) ** 2 + pc.dv(1) ** 2) ** 0.5, 9))
@@ -779,7 +780,6 @@ def test_the_routine_gets_the_interrupts_of_the_board_that_was_selected(two: Two
     pcap.ssms(axes)
     pcap.board().advance(4)
     assert (seen, pcap.rdirqpc()) == ([1], 1)
-    pcap.board().program_interrupt = False  # the program of the PC has answered
     pcap.MCUG3_ResetBoardIntRoutine()
     pcap.ssf(3, 1101, 0.0)
     pcap.ssms(axes)
