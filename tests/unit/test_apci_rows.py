@@ -8,6 +8,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -16,6 +17,7 @@ from polycnc.controllers.apci.board._codes import BootCode, InitCode, TransferCo
 from polycnc.controllers.apci.board._system_file import parse_system_file
 from polycnc.controllers.apci.pc._installed import InstalledBoard
 from polycnc.controllers.apci.pc._slots import Slot
+from polycnc.controllers.apci.sap._board_host import BoardTasks
 from support.apci_bits import Axst, ErrorReg
 from support.apci_pc import Pc, near
 
@@ -504,6 +506,24 @@ def test_at_most_512_bytes_of_a_string_are_returned(two: TwoBoards, tmp_path: Pa
 
 # ---------------------------------------------------------------------- inputs
 
+
+@pytest.mark.covers(
+    *(f"apci.digi.{bit}" for bit in range(16)), "sap.axis.digi", "apci.rddigi", "apci.const.digin"
+)
+def test_programs_read_the_inputs_that_the_pc_reads() -> None:
+    pc = Pc()
+    assert isinstance(pc.board.tasks, BoardTasks)
+    pc.board.tasks.load(sap.compile_program("WHILE TRUE DO CI1 := A2.digi;"))
+    pcap.startcnct(0)
+    for levels in (0xA5C3, 0x5A3C, 0xFFFF, *(1 << bit for bit in range(16))):
+        for number in range(1, 17):
+            pc.board.set_input(number, bool(levels >> number - 1 & 1))
+        pc.board.advance(3)
+        pcap.rddigi(record := pcap.TSRP(an=1))
+        assert record.digi & 0xFFFF == int(pc.board.state.ci[1]) & 0xFFFF == levels
+    pcap.detach()
+
+
 PLANNED = {  # function of two inputs, and the bit of axst that one of them sets
     "EO": 1,
     "DR": 2,
@@ -664,7 +684,7 @@ def test_a_circle_ends_with_its_target_velocity_of_either_sign(name: str) -> Non
 def test_a_record_with_a_negative_acceleration_or_velocity_is_discarded(kind: str) -> None:
     record = getattr(pcap, kind)
     stem = {"LMP": "mlr", "CMP": "mcr", "HMP": "mhr", "HMP3D": "mcr3d"}[kind]
-    shape = {"dtm": [2.0, 1.0, 1.0]} if kind == "LMP" else {"phi": 90.0, "dtca1": -2.0}
+    shape: dict[str, Any] = {"dtm": [2.0, 1.0, 1.0]} if kind == "LMP" else {"phi": 90.0, "dtca1": -2.0}
     shape = shape | {"pn3": 1.0} if kind == "HMP3D" else shape
     pc = Pc()
     for name in (stem, f"s{stem}"):
