@@ -757,6 +757,24 @@ def test_limits_of_axes_are_in_the_units_of_interpolation(name: str, tu: int) ->
     pcap.detach()
 
 
+@pytest.mark.covers("apci.TSRP.lp", "apci.rdlp", "apci.wrlp", "apci.rdlpndx", "apci.wrlpndx", "apci.szpa")
+def test_latched_positions_count_from_the_zero_offset_in_force() -> None:
+    pc = Pc()
+    record = pcap.TSRP(an=1, lp=4.25)
+    pcap.szpa(1, 2.5)
+    for read, write in ((pcap.rdlp, pcap.wrlp), (pcap.rdlpndx, pcap.wrlpndx)):
+        record.lp = 4.25
+        write(record)
+        read(record)
+        assert record.lp == 4.25
+    pcap.szpa(1, 0.0)
+    for read in (pcap.rdlp, pcap.rdlpndx):
+        read(record)
+        assert record.lp == 6.75
+    pcap.detach()
+    assert pc.code == 0
+
+
 # ---------------------------------------------------------------------- messages
 
 CODES = {  # of each function, all that the manual lists
