@@ -860,7 +860,7 @@ ELSEWHERE = re.compile(
     r"(apci|sap)\.(\w*Boot\w*|CardSelect|MsgToScreen|getEnvStr|Init\w+|mcuinit|MCUG3_Reset\w+|txbf\w*|rdepc"
     r"|scp|stepcnct|stopcnct|wrci|ErrorReg\.(4|6|11|14|20)\.\w+|const\.(eeprom|cncount|cbsize|taskstr|spdsize|phithreshold)"
     r"|rule\.(versions|toolradius_spline|relays|commonpersist)|comment|STOPCNCT"
-    r"|spoolnames|errors|task_roles)"
+    r"|errors|task_roles)"
 )
 CONFORMANCE = load_conformance()
 ROWS = [
