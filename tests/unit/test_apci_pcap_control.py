@@ -210,21 +210,29 @@ def test_rptodp_takes_the_actual_position_as_setpoint_where_no_profile_runs() ->
 
 
 @pytest.mark.covers("apci.rdaxst", "apci.axst.18.refh")
-@pytest.mark.covers("apci.rule.versions")
+@pytest.mark.covers("apci.rule.versions", "apci.axst.19.saf", "apci.axst.17.referenced")
 def test_old_operating_systems_lack_some_status_bits() -> None:
     seen = {}
-    for revision in ("V2.5.3.15", "V2.5.3.16", "V2.5.3.47"):
-        pc = Pc(SYSTEM, revision=revision)
+    for revision in (15, 16, 46, 47, 87, 88):
+        pc = Pc(SYSTEM, revision=f"V2.5.3.{revision}")
         pcap.shp(pcap.TSRP(an=0))
         pc.board.set_input(4, True)
         pc.board.advance(1)
+        pc.board.state.axis[0]["saf"] = 1
         pcap.rdaxst(record := pcap.TSRP(an=0))
         pcap.InitMcuSystem(pc.tsrp)
         pcap.rdap(whole := pcap.TSRP(an=0))
         assert whole.axst == pc.tsrp[0].axst == record.axst
-        seen[revision] = tuple(bool(record.axst & bit) for bit in (Axst.referenced, Axst.refh))
+        seen[revision] = tuple(bool(record.axst & bit) for bit in (Axst.referenced, Axst.refh, Axst.saf))
     pcap.detach()
-    assert seen == {"V2.5.3.15": (False, False), "V2.5.3.16": (True, False), "V2.5.3.47": (True, True)}
+    assert seen == {
+        15: (False, False, False),
+        16: (True, False, False),
+        46: (True, False, False),
+        47: (True, True, False),
+        87: (True, True, False),
+        88: (True, True, True),
+    }
 
 
 # ---------------------------------------------------------------------- zeros and overrides

@@ -131,6 +131,10 @@ def test_a_register_by_axis_number_is_returned_and_written(
     before = read(0), read(2)
 
     assert read(1) == planned
+    if isinstance(written, int):
+        for word in (-(1 << 31), -2, 1 << 30):  # every bit, also the highest
+            write(1, word)
+            assert read(1) == word
     write(1, written)
     assert read(1) == written
     assert type(read(1)) is type(written)
@@ -169,8 +173,9 @@ def test_a_variable_of_the_board_with_a_status(pc: Pc, stem: str, planned: float
     read, write = getattr(pcap, f"rd{stem}"), getattr(pcap, f"wr{stem}")
 
     assert read() == (0, planned)
-    assert write(written) == 0
-    assert read() == (0, written)
+    for value in (written, 0.0, written / 3.0):
+        assert write(value) == 0
+        assert read() == (0, value)
 
 
 @pytest.mark.covers(

@@ -207,6 +207,8 @@ def test_a_system_file_overwrites_what_was_changed_and_is_checked_against_the_bo
     assert pcap.rdaxstb(0, 10) == 0
     (tmp_path / "other.dat").write_text('[[axis]]\nmotor = "stepper"\n[[axis]]\n[[axis]]\n')
     assert pcap.txbf2("other.dat") == 0
+    pc.board.state.axis["cef"] = 0
+    pcap.rs()  # looks again
     assert pcap.rdaxstb(0, 10) == 1  # cef: the board has servos
     assert pcap.txbf2("missing.dat") == 20
     (tmp_path / "bad.cnc").write_bytes(b"no program")

@@ -8,6 +8,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -16,6 +17,7 @@ from polycnc.controllers.apci.board._codes import BootCode, InitCode, TransferCo
 from polycnc.controllers.apci.board._system_file import parse_system_file
 from polycnc.controllers.apci.pc._installed import InstalledBoard
 from polycnc.controllers.apci.pc._slots import Slot
+from polycnc.controllers.apci.sap._board_host import BoardTasks
 from support.apci_bits import Axst, ErrorReg
 from support.apci_pc import Pc, near
 
@@ -218,6 +220,7 @@ def test_what_keeps_the_board_from_being_reached_has_its_number(
 
 @pytest.mark.covers("apci.txbf2", "apci.txbf", "apci.InitMcuSystem.ret.lderr", "apci.file.system_dat")
 @pytest.mark.covers(*(f"apci.txbf2.ret.{code}" for code in (0, 20, 21, 22, 23, 24, 25)))
+@pytest.mark.covers("apci.BoardType.32", "apci.InitMcuSystem3", "apci.mcuinit", "apci.ROSI.sysfile_loaded")
 def test_what_a_transfer_returns_and_what_initialising_passes_on(two: TwoBoards, tmp_path: Path) -> None:
     files = {
         "b.dat": (b"[[axis]]\nspeed = 1\n", 24),
@@ -503,6 +506,24 @@ def test_at_most_512_bytes_of_a_string_are_returned(two: TwoBoards, tmp_path: Pa
 
 # ---------------------------------------------------------------------- inputs
 
+
+@pytest.mark.covers(
+    *(f"apci.digi.{bit}" for bit in range(16)), "sap.axis.digi", "apci.rddigi", "apci.const.digin"
+)
+def test_programs_read_the_inputs_that_the_pc_reads() -> None:
+    pc = Pc()
+    assert isinstance(pc.board.tasks, BoardTasks)
+    pc.board.tasks.load(sap.compile_program("WHILE TRUE DO CI1 := A2.digi;"))
+    pcap.startcnct(0)
+    for levels in (0xA5C3, 0x5A3C, 0xFFFF, *(1 << bit for bit in range(16))):
+        for number in range(1, 17):
+            pc.board.set_input(number, bool(levels >> number - 1 & 1))
+        pc.board.advance(3)
+        pcap.rddigi(record := pcap.TSRP(an=1))
+        assert record.digi & 0xFFFF == int(pc.board.state.ci[1]) & 0xFFFF == levels
+    pcap.detach()
+
+
 PLANNED = {  # function of two inputs, and the bit of axst that one of them sets
     "EO": 1,
     "DR": 2,
@@ -558,7 +579,7 @@ def test_a_queued_move_begins_with_its_velocity_at_once_under_an_override(overri
     pcap.smlr(axes, pcap.LMP(ac=1000.0, vl=20.0, tvl=20.0, dtm=[0.6, 0.8]))
     pcap.smlr(axes, pcap.LMP(ac=1000.0, vl=8.0, dtm=[0.6, 0.8]))
     pcap.ssms(axes)
-    seen = []
+    seen: list[float] = []
     while not pcap.rdaxstb(0, 13) or not seen:
         pc.board.advance(1)
         seen.append(round((pc.dv(0) ** 2 + pc.dv(1) ** 2) ** 0.5, 9))
@@ -566,6 +587,30 @@ def test_a_queued_move_begins_with_its_velocity_at_once_under_an_override(overri
     jump = next(k for k in range(fastest, len(seen)) if seen[k] != seen[fastest])
     assert seen[jump] == seen[jump + 9] == 8.0 * override
     pcap.detach()
+
+
+@pytest.mark.covers("apci.ErrorReg.10.SsfWaitRefused", "apci.ssf", "apci.ssf.waitnotes", "apci.LMP.tvl")
+@pytest.mark.parametrize(
+    "command",
+    [
+        pytest.param(number, marks=pytest.mark.covers(f"apci.ssf.{number}"))
+        for number in (1000, 1003, 1004, 1005, 1006, 1015, 1025)
+    ],
+)
+def test_a_wait_behind_a_move_that_ends_at_speed_is_dropped(command: int) -> None:
+    for tvl, refused in ((12.0, True), (-12.0, True), (0.0, False)):
+        pc = Pc()
+        axes = pc.close(1)
+        pcap.smlr(axes, pcap.LMP(ac=2000.0, vl=20.0, tvl=tvl, dtm=[0.0, 2.0]))
+        pcap.ssf(1, command, 6.0 if command == 1006 else 5000.0)
+        pcap.ssf(1, 77, 6.0)
+        pcap.ssms(axes)
+        pc.board.advance(200)
+        pcap.rdci(100, found := pcap.CIBUF())
+        assert (pcap.rdErrorReg(), found.ci[77], found.ci[99]) == (
+            (0x400, 6, 0) if refused else (0, 0, {1005: 5000, 1015: 5000, 1025: 2}.get(command, 0))
+        )
+        pcap.detach()
 
 
 UNITS = {"mm": (0, 1.0), "inch": (1, 25.4), "m": (2, 1000.0), "counts": (6, 1e-3), "steps": (7, 1e-3)}
@@ -595,6 +640,139 @@ def test_ms_brakes_with_trac_in_the_units_of_interpolation(name: str) -> None:
         assert velocity == near(50.8)
         assert (scans, pc.rp(0) - begun) == (157, near(5.08))  # 0.2 s, v * v / (2 * a)
     pcap.detach()
+
+
+@pytest.mark.covers("apci.CMP.tvl", "apci.HMP.tvl", "apci.HMP3D.tvl", "apci.profile.target_velocity")
+@pytest.mark.covers("apci.profile.move.case.negative_target_velocity")
+@pytest.mark.parametrize(
+    "name",
+    [
+        pytest.param(way + name, marks=pytest.mark.covers(f"apci.{way}{name}"))
+        for way in ("", "s")
+        for name in ("mca", "mcr", "mha", "mhr", "mca3d", "mcr3d")
+    ],
+)
+def test_a_circle_ends_with_its_target_velocity_of_either_sign(name: str) -> None:
+    kind = pcap.HMP3D if name.endswith("3d") else pcap.HMP if "mh" in name else pcap.CMP
+    for tvl in (6.0, -6.0):
+        pc = Pc()
+        axes = pc.close(0, 1, 2)
+        record = kind(ac=900.0, vl=20.0, tvl=tvl, phi=90.0, dtca1=-2.0, dtca2=0.0)
+        if isinstance(record, pcap.HMP3D):
+            record.pn3 = 1.0
+        getattr(pcap, name)(axes, record)  # a quarter about (-2, 0), to (-2, 2)
+        if name.startswith("s"):
+            pcap.ssms(axes)
+        pc.board.advance(4)
+        pc.scans_until_rest()
+        assert (pc.dv(0), pc.dv(1), pc.dv(2)) == (near(-tvl), near(0.0, abs=1e-6), 0.0)
+        assert (pc.rp(0), pc.rp(1)) == (near(-2.0, abs=0.02), near(2.0))
+        pcap.detach()
+
+
+@pytest.mark.covers(
+    "apci.profile.move.preconditions", "apci.profile.acceleration", "apci.profile.max_velocity"
+)
+@pytest.mark.covers("apci.axst.8.dhef", "apci.rule.dhef_reset")
+@pytest.mark.parametrize(
+    "kind",
+    [
+        pytest.param(kind, marks=pytest.mark.covers(f"apci.{kind}.ac", f"apci.{kind}.vl"), id=kind)
+        for kind in ("LMP", "CMP", "HMP", "HMP3D")
+    ],
+)
+def test_a_record_with_a_negative_acceleration_or_velocity_is_discarded(kind: str) -> None:
+    record = getattr(pcap, kind)
+    stem = {"LMP": "mlr", "CMP": "mcr", "HMP": "mhr", "HMP3D": "mcr3d"}[kind]
+    shape: dict[str, Any] = {"dtm": [2.0, 1.0, 1.0]} if kind == "LMP" else {"phi": 90.0, "dtca1": -2.0}
+    shape = shape | {"pn3": 1.0} if kind == "HMP3D" else shape
+    pc = Pc()
+    for name in (stem, f"s{stem}"):
+        for ac, vl in ((-900.0, 20.0), (900.0, -20.0)):
+            axes = pc.close(0, 1, 2)
+            assert [pcap.rdaxstb(an, 9) for an in range(3)] == [0, 0, 0]
+            getattr(pcap, name)(axes, record(ac=ac, vl=vl, **shape))
+            assert [pcap.rdaxstb(an, 9) for an in range(3)] == [1, 1, kind != "CMP"]
+            pcap.ssms(axes)
+            pc.board.advance(8)
+            assert [(pc.rp(an), pcap.rdMCiS(an)) for an in range(3)] == [(0.0, 0)] * 3
+            pcap.ra(axes)
+    pcap.detach()
+
+
+IN_MINUTES = '[[axis]]\ntime_unit = "min"\nslsp = 2000.0\ngf = 0.5\n'  # 1000 counts/mm
+SCAN_900_S = 0.0009
+
+
+def profile(pc: Pc, scans: int) -> list[tuple[float, float]]:
+    """Let scans pass and return the velocities of two axes after each, in mm/s."""
+    seen = []
+    for _ in range(scans):
+        pc.board.advance(1)
+        seen.append((pc.dv(0) / 60.0, pc.dv(1) / 60.0))
+    return seen
+
+
+@pytest.mark.covers("apci.rdMaxVel", "apci.rdMaxAcc", "apci.TRU.tu", "apci.tu.min", "apci.tu.tsample")
+@pytest.mark.covers("apci.wrMaxVel", "apci.wrMaxAcc", "apci.wrMDVel", "apci.sstvl", "apci.var.MaxVel")
+@pytest.mark.covers(
+    "apci.var.MaxAcc", "apci.var.MDVEL", "apci.MODEREG.7.maxcheck", "apci.MODEREG.0.lookahead"
+)
+@pytest.mark.covers("apci.rule.lookahead", "apci.ctru", "apci.TRU", "apci.smlr", "apci.LMP")
+@pytest.mark.parametrize(("name", "tu"), [("mm", 1), ("inch", 2), ("counts", 0)])
+def test_limits_of_axes_are_in_the_units_of_interpolation(name: str, tu: int) -> None:
+    pu, unit_mm = UNITS[name]
+    time_s = (1.0, 60.0, SCAN_900_S)[tu]
+    pc = Pc(f"sample_time_us = 900\n{IN_MINUTES}{IN_MINUTES}")
+    axes = pc.close(0, 1)
+    pcap.ctru(pcap.TRU(pu=pu, tu=tu))
+    velocity, acceleration = time_s / unit_mm, time_s**2 / unit_mm
+
+    def queue(x: float, y: float, ac: float, vl: float, tvl: float) -> None:
+        speeds = {"ac": ac * acceleration, "vl": vl * velocity, "tvl": tvl * velocity}
+        pcap.smlr(axes, pcap.LMP(**speeds, dtm=[x / unit_mm, y / unit_mm]))
+
+    pcap.wrModeReg(0x80)
+    pcap.wrMaxVel(0, 12.5 * velocity)
+    pcap.wrMaxAcc(1, 160.0 * acceleration)
+    queue(6.0, 8.0, 1000.0, 90.0, 0.0)  # 20.8333 mm/s and 200 mm/s2 along the path
+    pcap.sstvl(axes, 7.5 * velocity)
+    pcap.ssms(axes)
+    assert (pcap.rdMaxVel(0), pcap.rdMaxAcc(1)) == (12.5 * velocity, 160.0 * acceleration)
+    seen = profile(pc, 950)
+    assert max(x for x, _ in seen) == near(12.5)
+    assert seen[60] == (near(seen[59][0] + 120.0 * SCAN_900_S), near(seen[59][1] + 160.0 * SCAN_900_S))
+    assert seen[-1] == (near(4.5), near(6.0))
+    pcap.js(axes)
+    pc.scans_until_rest()
+    pcap.wrModeReg(0x1)
+    pcap.wrMDVel(0, 6.5 * velocity)
+    queue(3.0, 0.0, 500.0, 30.0, 30.0)
+    queue(0.0, 3.0, 500.0, 30.0, 0.0)
+    pcap.ssms(axes)
+    seen = profile(pc, 450)
+    corner = next(k for k, (_, y) in enumerate(seen) if y > 0.0)
+    assert 6.5 <= seen[corner - 1][0] < 6.5 + 500.0 * SCAN_900_S
+    assert 6.5 <= seen[corner][1] < 6.5 + 500.0 * SCAN_900_S
+    pcap.detach()
+
+
+@pytest.mark.covers("apci.TSRP.lp", "apci.rdlp", "apci.wrlp", "apci.rdlpndx", "apci.wrlpndx", "apci.szpa")
+def test_latched_positions_count_from_the_zero_offset_in_force() -> None:
+    pc = Pc()
+    record = pcap.TSRP(an=1, lp=4.25)
+    pcap.szpa(1, 2.5)
+    for read, write in ((pcap.rdlp, pcap.wrlp), (pcap.rdlpndx, pcap.wrlpndx)):
+        record.lp = 4.25
+        write(record)
+        read(record)
+        assert record.lp == 4.25
+    pcap.szpa(1, 0.0)
+    for read in (pcap.rdlp, pcap.rdlpndx):
+        read(record)
+        assert record.lp == 6.75
+    pcap.detach()
+    assert pc.code == 0
 
 
 # ---------------------------------------------------------------------- messages
@@ -640,7 +818,6 @@ def test_the_routine_gets_the_interrupts_of_the_board_that_was_selected(two: Two
     pcap.ssms(axes)
     pcap.board().advance(4)
     assert (seen, pcap.rdirqpc()) == ([1], 1)
-    pcap.board().program_interrupt = False  # the program of the PC has answered
     pcap.MCUG3_ResetBoardIntRoutine()
     pcap.ssf(3, 1101, 0.0)
     pcap.ssms(axes)

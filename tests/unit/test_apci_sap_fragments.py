@@ -35,13 +35,15 @@ def test_the_pipe_example_as_printed() -> None:
     assert board.tasks.rdcncts(0).errnum == 0
 
 
-@pytest.mark.covers("sap.comment")
+@pytest.mark.covers("sap.comment", "sap.scope")
 def test_a_comment_reaches_to_the_end_of_its_line_whatever_stands_in_it() -> None:
     board = run_text(
         "CI0 := 1; // CI0 := 2; { it's (* not // finished\n"
         "CI1 := 3; {CI1 := 4; // }\n CI2 := 5; (* CI2 := 6;\n*) CI3 := 7 // ; CI3 := 8\n ; CI4 := 9;"
     )
     assert [board.ci(k) for k in range(5)] == [1, 3, 5, 7, 9]
+    assert run_text("CI0 := 1; // a file may end here").ci(0) == 1
+    assert run_text("//\n//;\r\n///\nCI0 := 1//").ci(0) == 1
 
 
 def test_application_variables_as_printed() -> None:
@@ -74,6 +76,7 @@ def test_spool_functions_as_printed() -> None:
     ]
 
 
+@pytest.mark.covers("sap.scope", "sap.qualifier_access")
 def test_names_are_the_same_in_either_case() -> None:
     board = run_text("begin Mlr (x := 1); MLR (X := 1); a1.EFFRADIUS := 3; ci5 := Ci5 + 1 end.", system=PATH)
     assert board.calls[0] == board.calls[1]

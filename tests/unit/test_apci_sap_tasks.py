@@ -170,7 +170,7 @@ def test_status_shows_the_line_that_is_being_executed() -> None:
     assert board.tasks.rdcncts(7) == (0, 0, 0, 0, 0)
 
 
-@pytest.mark.covers("apci.CNCTS.stackfree")
+@pytest.mark.covers("apci.CNCTS.stackfree", "apci.CNCTS")
 def test_calls_take_stack_and_give_it_back() -> None:
     board = FakeBoard()
     board.start(
@@ -369,6 +369,11 @@ def test_writeln_stops_the_task_with_modereg_bit_26() -> None:
     board.tasks.contcnct(0)
     board.advance()
     assert (board.ci(0), running(board)) == (1, 0)  # stopped by STOP
+    forever = run_text(f"WRITELN ('a'); {COUNT_FOREVER}", system={("modereg", None): 1 << 26})
+    assert running(forever) == 0b0100
+    forever.tasks.contcnct(0)
+    forever.advance()
+    assert running(forever) == 0b0001  # bit 2 is that of a halt alone
     without = run_text(text)
     assert (without.ci(0), running(without)) == (1, 0)
 
