@@ -26,6 +26,7 @@ def group(card, *axes: int, cycles: int = 20) -> None:  # type: ignore[no-untype
     set_now(card, ("groupnum", len(axes)), ("groupsmooth", cycles))
 
 
+@pytest.mark.covers("imc.fifo.SEL_CFIFO")
 @pytest.mark.covers("imc.IMC_AddContourData")
 @shows("curpos")
 @pytest.mark.covers(
@@ -80,6 +81,7 @@ def test_contouring_shows_in_the_axes_of_the_group_while_points_are_carried_out(
     assert [card.read("curpos", i) for i in range(4)] == [0, -168, 0, 120]
 
 
+@pytest.mark.covers("imc.fifo.SEL_CFIFO")
 @pytest.mark.covers("imc.concept.cfifo", "imc.concept.contour")
 @shows("curpos startgroup")
 @pytest.mark.covers("imc.param.contouring")

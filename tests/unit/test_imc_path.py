@@ -203,24 +203,27 @@ def test_data_are_positions_or_distances_by_axis() -> None:
     assert _positions(card, 2) == [250, 450]
 
 
+@pytest.mark.parametrize("space", [1, 2])
+@pytest.mark.covers("imc.param.pathacc1", "imc.param.pathacc2", "imc.param.segtgvel1", "imc.param.segtgvel2")
 @pytest.mark.covers("imc.concept.pfifo_setup", "imc.IMC_AddLineNWithVel")
 @shows("curpos")
 @pytest.mark.covers("imc.param.feedoverride")
-def test_the_override_acts_at_once_and_0_pauses() -> None:
+def test_the_override_acts_at_once_and_0_pauses(space: int) -> None:
     card = ready_card()
-    enable_path(card, 0)
-    line(card, 5000, speed=20)
+    enable_path(card, 0, space=space)
+    set_now(card, (f"pathacc{3 - space}", 7), (f"feedrate{3 - space}", 0.25), (f"segtgvel{3 - space}", 3))
+    line(card, 5000, speed=20, space=space)
     card.advance(40)
-    send(card, IFIFO, ("feedrate1", 0.5))
-    assert trace(card, "pathvel1", 11)[-1] == 10
-    send(card, IFIFO, ("feedrate1", 0))
-    card.advance(30)
+    send(card, IFIFO, (f"feedrate{space}", 0.5))
+    assert trace(card, f"pathvel{space}", 11) == [*range(19, 9, -1), 10]
+    send(card, IFIFO, (f"feedrate{space}", 0))
+    assert trace(card, f"pathvel{space}", 30) == [*range(9, -1, -1), *[0] * 20]
     held = card.read("curpos")
-    assert (card.read("pathvel1"), card.read("moveinpath1")) == (0, FLAG)
+    assert (card.read(f"pathvel{space}"), card.read(f"moveinpath{space}")) == (0, FLAG)
     card.advance(50)
     assert card.read("curpos") == held
-    send(card, IFIFO, ("feedrate1", 1))
-    assert trace(card, "pathvel1", 30)[-1] == 20
+    send(card, IFIFO, (f"feedrate{space}", 1))
+    assert trace(card, f"pathvel{space}", 30) == [*range(1, 21), *[20] * 10]
     card.wait()
     assert card.read("curpos") == 5000
 
@@ -261,6 +264,7 @@ def test_switching_the_space_off_stops_by_force() -> None:
     assert card.read("curpos") == 6000
 
 
+@pytest.mark.covers("imc.fifo.SEL_PFIFO1", "imc.fifo.SEL_PFIFO2")
 @pytest.mark.covers(
     "imc.concept.pfifo1", "imc.concept.pfifo2", "imc.param.pfifoenable", "imc.concept.fifo_independence"
 )
