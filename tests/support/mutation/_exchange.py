@@ -19,6 +19,7 @@ def exchange(file: str, before: bytes, after: bytes) -> None:
     pairs: dict[CodeType, CodeType] = {}
     _pair(compile(before, file, "exec"), compile(after, file, "exec"), pairs)
     done = 0
+    gc.unfreeze()  # what conftest has frozen is not among the objects
     for function in gc.get_objects():
         if isinstance(function, FunctionType) and function.__code__.co_filename == file:
             code = pairs.get(function.__code__)
