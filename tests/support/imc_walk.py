@@ -159,6 +159,7 @@ def move(b: Bench, r: random.Random, axis: int) -> None:
         lambda: b.MoveAbsolute(r.randint(-130, 130), axis, queue),
         lambda: b.MoveRelative(r.choice((0, r.randint(-99, 99))), axis, queue),
         lambda: b.MoveSuperimposed(r.randint(-40, 40), axis, queue),
+        lambda: b.set(queue, axis, pcstgvel=r.choice((0, 2.25, -3.5, 1))),
         lambda: b.MoveVelocity(speed(r), axis, queue),
         lambda: b.MoveVelocity(speed(r), axis, queue),
     ))()  # fmt: skip
@@ -185,6 +186,7 @@ def other(b: Bench, r: random.Random, axis: int) -> None:
         lambda: b.InstallEvent([event(r), event(r)], 2, r.choice((IF, Q))),
         lambda: b.set(IF, events=0),
         lambda: b.ClearFIFO(r.choice((IF, Q, P1, P2, C))),
+        lambda: b.set(IF, axis, error=r.choice((0x40, 0x80, 1, 10))),
         lambda: b.GetCapData(2, axis),
         lambda: b.card.touch_probe(axis),
         lambda: b.card.turn_handwheel(axis, r.randint(-20, 20)),
