@@ -168,6 +168,24 @@ def test_an_arc_that_ends_where_it_begins_is_a_full_circle() -> None:
 
 
 @pytest.mark.covers(
+    "imc.IMC_AddSpiral", "imc.IMC_AddSpiralWithVel", "imc.IMC_AddArcLine", "imc.const.arc_dir"
+)
+@pytest.mark.parametrize(("clockwise", "side"), [(False, 40), (True, -40)])
+def test_a_helix_that_ends_where_it_begins_in_its_plane_goes_once_round(clockwise: bool, side: int) -> None:
+    card = ready_card()
+    enable_path(card, 3, 1, 2)
+    assert card.push(PFIFO1, Segment((0, 0, -72), (-40, 0), clockwise, 5 * 65536))
+    places = []
+    while not places or card.read("moving", 3):
+        card.advance(1)
+        places.append([card.read("curpos", axis) for axis in (3, 1, 2)])
+    assert places[-1] == [0, 0, -72]
+    assert card.read("seglen1") == round(math.hypot(2 * math.pi * 40, 72))
+    x, y, _ = min(places, key=lambda at: abs(at[2] + 18))  # after a quarter
+    assert (x, y) == (pytest.approx(-40, abs=5), pytest.approx(side, abs=2))
+
+
+@pytest.mark.covers(
     "imc.IMC_AddArcLine", "imc.IMC_AddArcLineWithVel", "imc.IMC_AddSpiral", "imc.IMC_AddSpiralWithVel"
 )
 @shows("curpos segmap_x1")
