@@ -312,6 +312,19 @@ def test_an_axis_that_cannot_take_part_makes_the_segment_an_error() -> None:
     assert (card.read("error", 0), card.read("user16b0")) == (0x1000, 1)
 
 
+@shows("error curpos segmap_x1 segmap_x2")
+@pytest.mark.covers("imc.concept.pfifo_setup", "imc.IMC_AddLineN")
+@pytest.mark.parametrize("space", [1, 2])
+@pytest.mark.parametrize("other", [2, 4, 9, 0xFFFF])  # the same axis again, and axes that are not there
+def test_coordinates_are_axes_that_there_are_and_each_once(space: int, other: int) -> None:
+    card = ready_card()
+    set_now(card, (f"segmap_x{space}", 2), (f"segmap_y{space}", other), (f"startpath{space}", FLAG))
+    line(card, 31, -42, speed=5, space=space)
+    card.advance(12)
+    assert [card.read("error", axis) for axis in range(4)] == [0, 0, 0x1000, 0]
+    assert (_positions(card, 4), card.read(f"pathmoving{space}")) == ([0] * 4, 0)
+
+
 @pytest.mark.covers("imc.concept.segment_blocking")
 @shows("curpos")
 def test_a_move_behind_a_segment_in_the_same_queue_is_carried_out() -> None:
