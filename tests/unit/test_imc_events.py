@@ -293,6 +293,9 @@ AT_THE_ENDS = (
     ("ADD32", 2**31 - 1, 2**31 - 1, "NotZero Little NotCarry"),
     ("ADD48", -2, 1, "NotZero Little NotCarry"),
     ("ADD48", -2, 3, "NotZero Great GreatEqu Carry"),
+    ("ADD48", 2**32, 2**33, "NotZero Great GreatEqu NotCarry"),
+    ("CMP48", -(2**40), 2**33, "NotZero Little NotCarry"),
+    ("CMP32", 70_000, 70_000 - 2**16, "NotZero Great GreatEqu NotCarry"),
 )
 
 
