@@ -62,8 +62,11 @@ def test_each_of_sixteen_coordinates_moves_its_axis() -> None:
     group(card, *axes, cycles=4)
     card.push_points([10 * (k + 1) for k in range(16)])
     send(card, IFIFO, ("startgroup", FLAG))
-    card.wait()
+    card.advance(2)
+    assert [card.read("contouring", i) for i in axes] == [FLAG] * 16
+    card.advance(3)
     assert [card.read("curpos", i) for i in axes] == [10 * (k + 1) for k in range(16)]
+    assert [card.read("contouring", i) + card.read("moving", i) for i in axes] == [0] * 16
 
 
 @shows("curpos startgroup")
