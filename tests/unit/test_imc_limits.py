@@ -183,7 +183,7 @@ def test_an_error_stops_both_systems_at_once_or_each_with_its_own_rate(
     card.advance(2)
     set_now(card, ("error", 0x40, 2))
     card.advance(3)  # the last of them at speed, and two that brake
-    assert (card.read("mcsvel", 2), card.read("pcsvel", 2)) == after
+    assert [card.read(name, 2) for name in ("mcsvel", "pcsvel")] == list(after)
     card.advance(4)
     assert [card.read(name, 2) for name in ("mcsvel", "pcsvel", "curvel", "moving")] == [0] * 4
 
