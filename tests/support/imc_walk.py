@@ -61,12 +61,13 @@ AXIS_VALUES: dict[str, Sequence[float]] = {
 CARD_VALUES: dict[str, Sequence[float]] = {
     "hpause": (0, 0, 0, 1), "timer": (40,), "delayus": (30000,), "events": (0,), "clrqfifo": (-1,),
     "clrPFIFO1": (-1,), "clrPFIFO2": (-1,), "clrCFIFO": (-1,), "clearimc": (-1,), "qwaittime": (0, 5),
-    "pwaittime1": (0,), "emstop": (0x10, 0x21), "startgroup": (0, -1, -1), "groupnum": (1, 2),
+    "pwaittime1": (0,), "pwaittime2": (0, 4), "emstop": (0x10, 0x21), "startgroup": (0, -1, -1), "groupnum": (1, 2),
     "groupsmooth": (1, 3, 4), "group_x": (1, 3), "group_y": (0, 2), "startpath1": (0, -1, -1),
-    "startpath2": (0, -1, -1), "feedrate1": (0, 0.5, 1, 1.25), "feedrate2": (0.75, 1), "pathacc1": (0.5, 2),
-    "pathacc2": (0.8,), "segtgvel1": (3, 6.5), "segtgvel2": (2.25, 5), "segendvel1": (0, 1.5), "asseglen1": (0, 1, 2),
-    "segmap_x1": (0, 2, 9), "segmap_y1": (1, 3), "segmap_x2": (2, 1), "segmap_y2": (3, 0),
-    "pathaxisnum1": (0, 0, 2, 4), "pathaxisnum2": (2, 1), "gin1lat": (1, 0xFF), "user16b1": (4, 9),
+    "startpath2": (0, -1, -1), "feedrate1": (0, 0.5, 1, 1.25), "feedrate2": (0, 0.75, 1), "pathacc1": (0.5, 2),
+    "pathacc2": (0.8, 1.5), "segendvel2": (0, 1.25), "asseglen2": (0, 1), "segtgvel1": (3, 6.5),
+    "segtgvel2": (2.25, 5), "segendvel1": (0, 1.5), "asseglen1": (0, 1, 2), "segmap_x1": (0, 2, 9),
+    "segmap_y1": (1, 3), "segmap_x2": (2, 1), "segmap_y2": (3, 0), "pathaxisnum1": (0, 0, 2, 4),
+    "pathaxisnum2": (0, 2, 1), "gin1lat": (1, 0xFF), "user16b1": (4, 9),
 }  # fmt: skip
 Act: TypeAlias = Callable[[Bench, random.Random, int], object]
 
@@ -158,6 +159,7 @@ def move(b: Bench, r: random.Random, axis: int) -> None:
         lambda: b.MoveAbsolute(r.randint(-130, 130), axis, queue),
         lambda: b.MoveRelative(r.choice((0, r.randint(-99, 99))), axis, queue),
         lambda: b.MoveSuperimposed(r.randint(-40, 40), axis, queue),
+        lambda: b.set(queue, axis, pcstgvel=r.choice((0, 2.25, -3.5, 1))),
         lambda: b.MoveVelocity(speed(r), axis, queue),
         lambda: b.MoveVelocity(speed(r), axis, queue),
     ))()  # fmt: skip
@@ -184,6 +186,7 @@ def other(b: Bench, r: random.Random, axis: int) -> None:
         lambda: b.InstallEvent([event(r), event(r)], 2, r.choice((IF, Q))),
         lambda: b.set(IF, events=0),
         lambda: b.ClearFIFO(r.choice((IF, Q, P1, P2, C))),
+        lambda: b.set(IF, axis, error=r.choice((0x40, 0x80, 1, 10))),
         lambda: b.GetCapData(2, axis),
         lambda: b.card.touch_probe(axis),
         lambda: b.card.turn_handwheel(axis, r.randint(-20, 20)),

@@ -26,6 +26,7 @@ def group(card, *axes: int, cycles: int = 20) -> None:  # type: ignore[no-untype
     set_now(card, ("groupnum", len(axes)), ("groupsmooth", cycles))
 
 
+@pytest.mark.covers("imc.fifo.SEL_CFIFO")
 @pytest.mark.covers("imc.IMC_AddContourData")
 @shows("curpos")
 @pytest.mark.covers(
@@ -61,8 +62,11 @@ def test_each_of_sixteen_coordinates_moves_its_axis() -> None:
     group(card, *axes, cycles=4)
     card.push_points([10 * (k + 1) for k in range(16)])
     send(card, IFIFO, ("startgroup", FLAG))
-    card.wait()
+    card.advance(2)
+    assert [card.read("contouring", i) for i in axes] == [FLAG] * 16
+    card.advance(3)
     assert [card.read("curpos", i) for i in axes] == [10 * (k + 1) for k in range(16)]
+    assert [card.read("contouring", i) + card.read("moving", i) for i in axes] == [0] * 16
 
 
 @shows("curpos startgroup")
@@ -80,6 +84,7 @@ def test_contouring_shows_in_the_axes_of_the_group_while_points_are_carried_out(
     assert [card.read("curpos", i) for i in range(4)] == [0, -168, 0, 120]
 
 
+@pytest.mark.covers("imc.fifo.SEL_CFIFO")
 @pytest.mark.covers("imc.concept.cfifo", "imc.concept.contour")
 @shows("curpos startgroup")
 @pytest.mark.covers("imc.param.contouring")

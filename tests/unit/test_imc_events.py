@@ -118,6 +118,40 @@ def test_every_command_computes_in_twos_complement(command: str, immediate: bool
         assert stored == expected, (a, b)
 
 
+OF_AN_AXIS = {16: address("trackwin"), 32: address("breakp"), 48: address("gearratio")}
+
+
+@pytest.mark.covers(*(f"imc.event.{command.name}" for command in EventCommand), "imc.struct.EventInfo")
+@pytest.mark.covers("imc.struct.EventInfo.Src2.param", "imc.enum.IMC_EVENT_CMD", "imc.IMC_InstallEvent")
+def test_operands_and_result_are_those_of_their_axes() -> None:
+    card = ready_card(number_of_axes=4)
+    for name, immediate in _names():
+        first, second, result, compute = ARITHMETIC[name.replace("i", "")]
+        values = {
+            bits: [_signed(0x5A31_7E4F_6B2D * (3 + 2 * axis), bits) for axis in range(4)]
+            for bits in OF_AN_AXIS
+        }
+        for bits, at in OF_AN_AXIS.items():
+            for axis, value in enumerate(values[bits]):
+                card.write_raw(at, value, axis, bits // 16)
+        operands = {
+            "first": OF_AN_AXIS[first],
+            "first_axis": 2,
+            "target": OF_AN_AXIS[result],
+            "target_axis": 3,
+        }
+        if immediate:
+            operands["constant"] = values[second][1]
+        else:
+            operands |= {"second": OF_AN_AXIS[second], "second_axis": 1}
+        install(card, event(name, "Allways", **operands))
+        card.advance(1)
+        values[result][3] = _signed(compute(values[first][2], values[second][1]), result)
+        for bits, at in OF_AN_AXIS.items():
+            assert [card.read_raw(at, axis, bits // 16) for axis in range(4)] == values[bits], name
+        set_now(card, ("events", 0))
+
+
 @pytest.mark.covers(
     "imc.event.CMD_SCA32", "imc.event.CMD_SCA48", "imc.event.CMD_SCA32i", "imc.event.CMD_SCA48i"
 )
@@ -259,6 +293,9 @@ AT_THE_ENDS = (
     ("ADD32", 2**31 - 1, 2**31 - 1, "NotZero Little NotCarry"),
     ("ADD48", -2, 1, "NotZero Little NotCarry"),
     ("ADD48", -2, 3, "NotZero Great GreatEqu Carry"),
+    ("ADD48", 2**32, 2**33, "NotZero Great GreatEqu NotCarry"),
+    ("CMP48", -(2**40), 2**33, "NotZero Little NotCarry"),
+    ("CMP32", 70_000, 70_000 - 2**16, "NotZero Great GreatEqu NotCarry"),
 )
 
 

@@ -128,6 +128,23 @@ def test_index_pulses_count_from_the_edge(returns: int, number: int, pulse: int)
     assert origin(card) == pulse
 
 
+@pytest.mark.covers("imc.IMC_HomeSwitchIndex1", "imc.IMC_HomeSwitchIndex2", "imc.IMC_HomeSwitchIndex3")
+@shows("highvel lowvel homeseq gohome")
+@pytest.mark.parametrize("way", [1, -1])
+@pytest.mark.parametrize(
+    ("returns", "first", "pulse"), [(0, 49.5, 59.5), (1, 50.5, 40.5), (1, 49.5, 49.5), (2, 49.5, 59.5)]
+)
+def test_a_pulse_just_before_the_edge_does_not_count(
+    returns: int, first: float, pulse: float, way: int
+) -> None:
+    switch = sorted((50 * way, 90 * way))
+    card = ready_card(f"[[axis]]\norigin = {switch}\nindex = {{ first = {first * way}, pitch = 10.0 }}\n")
+    set_now(card, ("highvel", 4), ("lowvel", 2))
+    home(card, index=1, returns=returns, negative=way < 0)
+    run_home(card)
+    assert origin(card) == pytest.approx(pulse * way, abs=1)
+
+
 @pytest.mark.covers("imc.IMC_HomeIndex")
 @pytest.mark.covers("imc.param.indexNum")
 @pytest.mark.parametrize(

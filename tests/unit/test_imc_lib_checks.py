@@ -384,6 +384,21 @@ def test_events_that_mean_nothing(
     assert card.told == []
 
 
+@pytest.mark.covers(*(f"imc.event.{command.name}" for command in lib.IMC_EVENT_CMD), "imc.struct.EventInfo")
+def test_a_copy_and_a_constant_need_a_place_and_a_result_does_not(
+    card: ToldCard, handle: lib.IMC_HANDLE
+) -> None:
+    for command in lib.IMC_EVENT_CMD:
+        name = command.name.removeprefix("CMD_")
+        constant = "i" in name or name.startswith("SET")
+        event = lib.EventInfo.of(command, src1=(337, 0), src2=5 if constant else (340, 0))
+        status = lib.IMC_INVALID_PARAM if name[:3] in ("COP", "SET") else lib.IMC_OK
+        assert lib.IMC_InstallEvent(handle, [event], 1, I) == status, name
+        event.dest_loc, event.dest_axis = 337, 3
+        assert lib.IMC_InstallEvent(handle, [event], 1, I) == lib.IMC_OK, name
+    assert len(card.told) == 2 * 34 - 6
+
+
 @pytest.mark.covers("imc.IMC_GetMulParam")
 @pytest.mark.covers("imc.IMC_InstallEvent")
 def test_a_refused_read_leaves_its_structures_alone(handle: lib.IMC_HANDLE) -> None:

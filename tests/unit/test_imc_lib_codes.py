@@ -110,6 +110,15 @@ ALIASES = {
 }
 
 
+@pytest.mark.covers(
+    "imc.IMC_GetParamBit",
+    "imc.IMC_AddSpiralWithVel",
+    "imc.IMC_AddContourData",
+    "imc.IMC_MoveTP",
+    "imc.IMC_MovePP",
+    "imc.IMC_MoveTV",
+    "imc.IMC_MovePV",
+)
 def test_other_names_are_the_same_functions() -> None:
     for other, name in ALIASES.items():
         assert getattr(imclib, other) is getattr(imclib, name)

@@ -219,6 +219,7 @@ def test_cards_have_places(ports: tuple[lib.Port, ...], adapters: int, what: str
         lib.attach(*ports, adapters=("net",) * adapters)
 
 
+@pytest.mark.covers("imc.IMC_Open")
 def test_cards_without_a_place_take_the_next_free_one() -> None:
     ports = lib.attach(lib.Port(ToldCard(), 0), ToldCard(), lib.Port(ToldCard(), 2), ToldCard())
     assert [port.id for port in ports] == [0, 1, 2, 3]

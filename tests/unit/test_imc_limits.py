@@ -172,6 +172,22 @@ def test_stopmode_names_the_errors_that_stop_at_once_and_all_others_brake(
         assert (card.read("curvel", 1), card.read("curvel", 2)) == (0, 3)
 
 
+@shows("stopmode stopfilt error pcsvel mcsvel pcsdecel mcsdecel pcstgvel mcstgvel")
+@pytest.mark.parametrize(("mode", "after"), [(0x40, (0, 0)), (~0x40, (5, -3))])
+def test_an_error_stops_both_systems_at_once_or_each_with_its_own_rate(
+    mode: int, after: tuple[int, int]
+) -> None:
+    card = ready_card()
+    set_now(card, ("mcsaccel", 9, 2), ("mcsdecel", 2, 2), ("pcsaccel", 6, 2), ("pcsdecel", 1.5, 2))
+    set_now(card, ("stopmode", mode, 2), ("mcstgvel", 9, 2), ("pcstgvel", -6, 2))
+    card.advance(2)
+    set_now(card, ("error", 0x40, 2))
+    card.advance(3)  # the last of them at speed, and two that brake
+    assert [card.read(name, 2) for name in ("mcsvel", "pcsvel")] == list(after)
+    card.advance(4)
+    assert [card.read(name, 2) for name in ("mcsvel", "pcsvel", "curvel", "moving")] == [0] * 4
+
+
 @shows("curvel mcsaccel mcsdecel mcstgvel")
 @pytest.mark.covers("imc.param.stopfilt", "imc.param.stopmode", "imc.param.exitfilt", "imc.param.error")
 @pytest.mark.covers("imc.param.emstop", "imc.param.run")

@@ -415,3 +415,4 @@ def test_48_bits_without_a_sign_reach_to_65536() -> None:
     assert (unsigned.words, unsigned.fraction_bits, unsigned.is_signed) == (3, 32, False)
     assert unsigned.to_raw(65536 - 2**-32) == 2**48 - 1
     assert unsigned.from_raw(2**48 - 1) == 65536 - 2**-32
+    assert (unsigned.least, unsigned.most) == (0, 65536 - 2**-32)

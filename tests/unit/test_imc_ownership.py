@@ -326,3 +326,16 @@ def test_a_move_without_speed_or_rate_is_a_bad_instruction_and_the_axis_brakes(r
         assert set(speeds) == {6}  # not masked, so the jog goes on
     else:
         assert (max(steps), speeds[-1]) == (deceleration, 0)
+
+
+@shows("mcsmaxvel mcsaccel mcsdecel error mcsgo stopfilt curvel")
+@pytest.mark.parametrize("value", [0, -1.5])
+@pytest.mark.parametrize("register", ["mcsmaxvel", "mcsaccel", "mcsdecel"])
+def test_a_move_that_cannot_be_leaves_what_runs_alone_where_no_mask_stops_it(
+    register: str, value: float
+) -> None:
+    card = owned(own.RUNS)
+    set_now(card, ("stopfilt", 0, SLAVE))
+    write(card, **{register: value, "mcstgpos": 9000, "mcsgo": FLAG})
+    assert (card.read("error", SLAVE), card.read("mcsgo", SLAVE)) == (0x1000, 0)
+    assert set(trace(card, "curvel", 20, SLAVE)) == {6}

@@ -168,6 +168,24 @@ def test_an_arc_that_ends_where_it_begins_is_a_full_circle() -> None:
 
 
 @pytest.mark.covers(
+    "imc.IMC_AddSpiral", "imc.IMC_AddSpiralWithVel", "imc.IMC_AddArcLine", "imc.const.arc_dir"
+)
+@pytest.mark.parametrize(("clockwise", "side"), [(False, 40), (True, -40)])
+def test_a_helix_that_ends_where_it_begins_in_its_plane_goes_once_round(clockwise: bool, side: int) -> None:
+    card = ready_card()
+    enable_path(card, 3, 1, 2)
+    assert card.push(PFIFO1, Segment((0, 0, -72), (-40, 0), clockwise, 5 * 65536))
+    places: list[list[float]] = []
+    while not places or card.read("moving", 3):
+        card.advance(1)
+        places.append([card.read("curpos", axis) for axis in (3, 1, 2)])
+    assert places[-1] == [0, 0, -72]
+    assert card.read("seglen1") == round(math.hypot(2 * math.pi * 40, 72))
+    place = min(places, key=lambda at: abs(at[2] + 18))  # after a quarter
+    assert math.dist(place, (-40, side, -18)) < 5
+
+
+@pytest.mark.covers(
     "imc.IMC_AddArcLine", "imc.IMC_AddArcLineWithVel", "imc.IMC_AddSpiral", "imc.IMC_AddSpiralWithVel"
 )
 @shows("curpos segmap_x1")
@@ -203,24 +221,27 @@ def test_data_are_positions_or_distances_by_axis() -> None:
     assert _positions(card, 2) == [250, 450]
 
 
+@pytest.mark.parametrize("space", [1, 2])
+@pytest.mark.covers("imc.param.pathacc1", "imc.param.pathacc2", "imc.param.segtgvel1", "imc.param.segtgvel2")
 @pytest.mark.covers("imc.concept.pfifo_setup", "imc.IMC_AddLineNWithVel")
 @shows("curpos")
 @pytest.mark.covers("imc.param.feedoverride")
-def test_the_override_acts_at_once_and_0_pauses() -> None:
+def test_the_override_acts_at_once_and_0_pauses(space: int) -> None:
     card = ready_card()
-    enable_path(card, 0)
-    line(card, 5000, speed=20)
+    enable_path(card, 0, space=space)
+    set_now(card, (f"pathacc{3 - space}", 7), (f"feedrate{3 - space}", 0.25), (f"segtgvel{3 - space}", 3))
+    line(card, 5000, speed=20, space=space)
     card.advance(40)
-    send(card, IFIFO, ("feedrate1", 0.5))
-    assert trace(card, "pathvel1", 11)[-1] == 10
-    send(card, IFIFO, ("feedrate1", 0))
-    card.advance(30)
+    send(card, IFIFO, (f"feedrate{space}", 0.5))
+    assert trace(card, f"pathvel{space}", 11) == [*range(19, 9, -1), 10]
+    send(card, IFIFO, (f"feedrate{space}", 0))
+    assert trace(card, f"pathvel{space}", 30) == [*range(9, -1, -1), *[0] * 20]
     held = card.read("curpos")
-    assert (card.read("pathvel1"), card.read("moveinpath1")) == (0, FLAG)
+    assert (card.read(f"pathvel{space}"), card.read(f"moveinpath{space}")) == (0, FLAG)
     card.advance(50)
     assert card.read("curpos") == held
-    send(card, IFIFO, ("feedrate1", 1))
-    assert trace(card, "pathvel1", 30)[-1] == 20
+    send(card, IFIFO, (f"feedrate{space}", 1))
+    assert trace(card, f"pathvel{space}", 30) == [*range(1, 21), *[20] * 10]
     card.wait()
     assert card.read("curpos") == 5000
 
@@ -261,6 +282,7 @@ def test_switching_the_space_off_stops_by_force() -> None:
     assert card.read("curpos") == 6000
 
 
+@pytest.mark.covers("imc.fifo.SEL_PFIFO1", "imc.fifo.SEL_PFIFO2")
 @pytest.mark.covers(
     "imc.concept.pfifo1", "imc.concept.pfifo2", "imc.param.pfifoenable", "imc.concept.fifo_independence"
 )
@@ -288,6 +310,19 @@ def test_an_axis_that_cannot_take_part_makes_the_segment_an_error() -> None:
     card.advance(20)
     assert _positions(card, 2) == [0, 0]
     assert (card.read("error", 0), card.read("user16b0")) == (0x1000, 1)
+
+
+@shows("error curpos segmap_x1 segmap_x2")
+@pytest.mark.covers("imc.concept.pfifo_setup", "imc.IMC_AddLineN")
+@pytest.mark.parametrize("space", [1, 2])
+@pytest.mark.parametrize("other", [2, 4, 9, 0xFFFF])  # the same axis again, and axes that are not there
+def test_coordinates_are_axes_that_there_are_and_each_once(space: int, other: int) -> None:
+    card = ready_card()
+    set_now(card, (f"segmap_x{space}", 2), (f"segmap_y{space}", other), (f"startpath{space}", FLAG))
+    line(card, 31, -42, speed=5, space=space)
+    card.advance(12)
+    assert [card.read("error", axis) for axis in range(4)] == [0, 0, 0x1000, 0]
+    assert (_positions(card, 4), card.read(f"pathmoving{space}")) == ([0] * 4, 0)
 
 
 @pytest.mark.covers("imc.concept.segment_blocking")

@@ -43,6 +43,7 @@ def _cells(card) -> list[float]:  # type: ignore[no-untyped-def]
     return [card.read(name) for name in CELLS]
 
 
+@pytest.mark.covers("imc.fifo.SEL_QFIFO")
 @pytest.mark.covers("imc.concept.qfifo", "imc.concept.control_cycle")
 def test_qfifo_carries_out_one_instruction_a_cycle() -> None:
     card = ready_card()
@@ -53,6 +54,7 @@ def test_qfifo_carries_out_one_instruction_a_cycle() -> None:
         assert _cells(card) == done
 
 
+@pytest.mark.covers("imc.fifo.SEL_IFIFO", "imc.concept.control_cycle")
 @pytest.mark.covers("imc.concept.ififo")
 def test_ififo_carries_out_all_it_holds_in_the_next_cycle() -> None:
     card = ready_card()
@@ -90,6 +92,7 @@ def test_a_wait_is_released_by_its_time_register_or_by_clearing(release: str) ->
     assert card.waiting_words(QFIFO) == 0
 
 
+@pytest.mark.covers("imc.fifo.SEL_QFIFO", "imc.fifo.SEL_PFIFO1", "imc.fifo.SEL_PFIFO2")
 @pytest.mark.covers("imc.IMC_ClearFIFO", "imc.IMC_WaitTime")
 @pytest.mark.parametrize(
     ("queue", "shown"), [(QFIFO, "qwaittime"), (PFIFO1, "pwaittime1"), (PFIFO2, "pwaittime2")]
@@ -106,6 +109,7 @@ def test_a_queue_that_is_emptied_waits_no_longer(queue: Fifo, shown: str) -> Non
     assert card.read(shown) == 0
 
 
+@pytest.mark.covers("imc.fifo.SEL_QFIFO", "imc.fifo.SEL_PFIFO1", "imc.fifo.SEL_PFIFO2")
 @pytest.mark.covers("imc.IMC_WaitTime", "imc.concept.qfifo", "imc.concept.pfifo1", "imc.concept.pfifo2")
 @shows("user16b0")
 @pytest.mark.parametrize("queue", [QFIFO, PFIFO1, PFIFO2])
@@ -164,6 +168,7 @@ def test_a_wait_for_the_end_of_a_move_behind_that_move_is_not_met_too_early() ->
         assert (_cells(card)[0], card.read("curpos", 1)) == (1, 1000)
 
 
+@pytest.mark.covers("imc.fifo.SEL_PFIFO1", "imc.fifo.SEL_PFIFO2")
 @shows("user16b0")
 @pytest.mark.covers("imc.concept.pfifo1", "imc.concept.pfifo2", "imc.param.pfifoenable")
 @pytest.mark.parametrize("space", [1, 2])
@@ -183,22 +188,48 @@ def test_a_path_queue_is_off_until_it_is_enabled(space: int) -> None:
     assert (_cells(card)[:3], card.waiting_words(queue)) == ([1, 5, 10], 0)
 
 
+@pytest.mark.covers(
+    "imc.fifo.SEL_IFIFO",
+    "imc.fifo.SEL_QFIFO",
+    "imc.fifo.SEL_PFIFO1",
+    "imc.fifo.SEL_PFIFO2",
+    "imc.fifo.SEL_CFIFO",
+    "imc.enum.FIFO_SEL",
+)
 @pytest.mark.covers("imc.status.IMC_FIFO_FULL", "imc.concept.ififo", "imc.concept.qfifo")
 @shows("user16b0 user16b1")
 def test_a_full_queue_takes_nothing_and_drains_with_time() -> None:
-    card = ready_card("[depths]\nififo = 64\nqfifo = 64\n")
-    for queue in (IFIFO, QFIFO):
+    depths = {"ififo": 64, "qfifo": 70, "pfifo1": 78, "pfifo2": 87, "cfifo": 99}
+    card = ready_card("[depths]\n" + "".join(f"{name} = {depth}\n" for name, depth in depths.items()))
+    for queue, depth in zip((IFIFO, QFIFO, PFIFO1, PFIFO2), depths.values(), strict=False):
+        assert card.config.depths.of(queue) == depth
         taken = 0
-        while card.push(queue, setting("user16b0", taken)):
+        while card.push(queue, setting("user16b0", 100 * queue + taken)):
             taken += 1
-        assert taken == 64 // 3
-        assert card.waiting_words(queue) == taken * 3
-        card.advance(1)
-        assert card.push(queue, setting("user16b1", 99))
+        assert (taken, card.waiting_words(queue)) == (depth // 3, depth // 3 * 3)
+    assert card.push_points(range(99))
+    assert not card.push_points([1])
+    assert card.config.depths.of(Fifo.SEL_CFIFO) == card.waiting_words(Fifo.SEL_CFIFO) == 99
+    card.advance(1)
+    assert [card.waiting_words(queue) for queue in Fifo] == [0, 66, 78, 87, 99]
+    for queue in (IFIFO, QFIFO):
+        assert card.push(queue, setting(f"user16b{1 + queue}", 99))
     card.advance(64)
-    assert _cells(card)[:2] == [20, 99]
+    assert _cells(card) == [122, 99, 99]
+    for queue, last in ((PFIFO1, 225), (PFIFO2, 328)):
+        card.write(f"startpath{queue - 1}", FLAG)
+        card.advance(1)
+        assert (_cells(card)[0], card.waiting_words(queue)) == (last, 0)
 
 
+@pytest.mark.covers(
+    "imc.fifo.SEL_IFIFO",
+    "imc.fifo.SEL_QFIFO",
+    "imc.fifo.SEL_PFIFO1",
+    "imc.fifo.SEL_PFIFO2",
+    "imc.fifo.SEL_CFIFO",
+    "imc.IMC_ClearFIFO",
+)
 @pytest.mark.covers("imc.param.clrififo", "imc.param.cfifocnt", "imc.param.clrqfifo")
 def test_count_registers_show_the_words_that_wait_and_clear_when_written() -> None:
     card = ready_card()
@@ -256,6 +287,7 @@ def test_queues_refuse_what_is_not_for_them() -> None:
     assert [card.waiting_words(queue) for queue in range(5)] == [0] * 5
 
 
+@pytest.mark.covers("imc.fifo.SEL_QFIFO", "imc.concept.qfifo", "imc.IMC_SetMulParam")
 @shows("user16b0 user32b0")
 def test_long_traffic_goes_round_the_ring() -> None:
     card = ready_card("[depths]\nqfifo = 64\n")
@@ -302,6 +334,7 @@ def test_general_outputs_follow_their_registers() -> None:
             card.output(number)
 
 
+@pytest.mark.covers("imc.fifo.SEL_PFIFO1", "imc.fifo.SEL_PFIFO2")
 @pytest.mark.covers("imc.concept.segment_blocking", "imc.concept.fifo_independence")
 @shows("curpos user16b0 user16b1 user16b2")
 def test_a_segment_holds_its_own_queue_only() -> None:
@@ -318,6 +351,7 @@ def test_a_segment_holds_its_own_queue_only() -> None:
     assert (_cells(card), card.read("curpos")) == ([1, 1, 1], 500)
 
 
+@pytest.mark.covers("imc.concept.instruction_fifos", "imc.fifo.SEL_CFIFO", "imc.fifo.SEL_QFIFO")
 def test_what_never_fits_into_a_queue_is_refused_and_not_put_off() -> None:
     card = ready_card("[depths]\nqfifo = 64\ncfifo = 100\n")
     writes = WriteMany(tuple(setting("user16b0", k) for k in range(22)))
@@ -336,6 +370,17 @@ def test_what_never_fits_into_a_queue_is_refused_and_not_put_off() -> None:
         card.push(PFIFO1, Points(()))
 
 
+@pytest.mark.covers(
+    "imc.fifo.SEL_IFIFO",
+    "imc.fifo.SEL_QFIFO",
+    "imc.fifo.SEL_PFIFO1",
+    "imc.fifo.SEL_PFIFO2",
+    "imc.concept.ififo",
+    "imc.concept.qfifo",
+    "imc.concept.pfifo1",
+    "imc.concept.pfifo2",
+    "imc.concept.control_cycle",
+)
 @shows("user16b0 user16b1")
 @pytest.mark.covers("imc.concept.instruction_fifos")
 @pytest.mark.parametrize(("queue", "cycles"), [(IFIFO, 1), (QFIFO, 3), (PFIFO1, 1), (PFIFO2, 1)])
@@ -356,6 +401,7 @@ def test_every_queue_takes_the_same_instructions_and_carries_them_out_in_order(
     assert card.waiting_words(queue) == 0
 
 
+@pytest.mark.covers("imc.fifo.SEL_QFIFO", "imc.fifo.SEL_PFIFO1", "imc.fifo.SEL_PFIFO2")
 @pytest.mark.covers("imc.IMC_ClearFIFO")
 @shows("clrqfifo user16b0 user16b1 user16b2")
 @pytest.mark.parametrize("before", [0, 1, 3])
@@ -386,6 +432,9 @@ def test_emptying_at_once_spares_what_is_sent_after_it(
     assert card.waiting_words(fifo) == 0
 
 
+@pytest.mark.covers(
+    "imc.IMC_ClearFIFO", "imc.concept.pfifo1", "imc.fifo.SEL_PFIFO1", "imc.IMC_AddLineNWithVel"
+)
 @shows("mcspos")
 def test_lines_sent_right_after_an_emptying_are_gone_along() -> None:
     card = ready_card()
@@ -397,6 +446,7 @@ def test_lines_sent_right_after_an_emptying_are_gone_along() -> None:
     assert card.read("mcspos") == 1000
 
 
+@pytest.mark.covers("imc.fifo.SEL_CFIFO", "imc.concept.cfifo", "imc.IMC_ClearFIFO", "imc.IMC_AddContourData")
 def test_points_sent_right_after_an_emptying_stay() -> None:
     card = ready_card()
     assert card.push_points([1, 2, 3])

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import gc
 from pathlib import Path
+from typing import Any
 
 import pytest
 
 from support.mutation import Reach, Session, candidate_tests, mutants_of
+from support.mutation._exchange import exchange
 
 MODULE = b'''"""A module."""
 
@@ -111,6 +114,19 @@ def repository(tmp_path: Path) -> Path:
         (root / name).parent.mkdir(parents=True, exist_ok=True)
         (root / name).write_text(text, encoding="utf-8")
     return root
+
+
+def test_functions_that_the_collector_has_frozen_are_exchanged(tmp_path: Path) -> None:
+    file = tmp_path / "frozen.py"
+    file.write_bytes(MODULE)
+    names: dict[str, Any] = {}
+    exec(compile(MODULE, str(file), "exec"), names)
+    gc.freeze()
+    try:
+        exchange(str(file), MODULE, MODULE.replace(b"2.0", b"5.0"))
+        assert names["share"](1.0, 1.0) == (-6.0, False)
+    finally:
+        gc.freeze()
 
 
 def test_where_time_is_short_those_that_run_what_others_do_not_come_first() -> None:
