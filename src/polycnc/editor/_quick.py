@@ -1,7 +1,7 @@
 """The first answer to a change of a long program: what is known already, and what the changed lines are by themselves.
 
-The changed lines are checked after what sets the state of the control before them: plain moves and arcs far above are left
-out. So this is not the last word; the check of the whole text, which follows, is.
+The changed lines are checked after what sets the state of the control before them: plain moves and arcs far above are
+left out. So this is not the last word; the check of the whole text, which follows, is.
 """
 
 from __future__ import annotations
