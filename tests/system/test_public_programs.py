@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from polycnc.nc import ProgramText, load_dialect
-from polycnc.nc.dialect._dialect import Arcs
+from polycnc.nc.dialect._arc_settings import Arcs
 from support.programs import LINEAR, channel_state, machine_config, prepare, queue_bytes
 
 CONFIG = machine_config(LINEAR)

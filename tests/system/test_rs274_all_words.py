@@ -50,9 +50,6 @@ KNOWN = (
 """Refusals of polycnc that LinuxCNC does not have."""
 KNOWN_OF_RS274 = ("entry arc", "read current position")
 """Refusals that polycnc does not have: a whole circle as a lead-in, #5420 in compensation."""
-MOST_OPEN = 0
-"""How many of 500 may differ: what has not been settled yet (5 of 5,000: corners of compensation, G30 of some axes
-with a turned work offset). It only shrinks."""
 _IGNORED = re.compile(r"M(6 |61|19|4[89]|5[0123]|7[0123])")
 _IN_STEP = re.compile(r"M6[237] ")
 _CYCLES = re.compile(r"G(7[34]|8[1-9])")
@@ -160,6 +157,8 @@ def difference(blocks: list[str], number: int, theirs: rs274.Sequences) -> str:
     text = "\n".join(own)
     if found and "G96" in text and "G95" in text:
         return ""  # the speed of constant surface speed is not printed
+    if found and _CYCLES.search(text) and re.search(r"G4 P\S+ [@^]", text):
+        return ""  # rs274 takes P of G4 for that of the cycle, too
     return found
 
 
@@ -184,7 +183,7 @@ def test_random_words_of_all_kinds_ask_for_the_same(tmp_path: Path) -> None:
 @pytest.mark.parametrize("first", range(10_000, 15_000, 500))
 def test_many_random_words_of_all_kinds_ask_for_the_same(first: int, tmp_path: Path) -> None:
     found = [text for start in (first, first + 250) for text in differing(start, 250, tmp_path)]
-    assert len(found) <= MOST_OPEN, f"{len(found)} of 500\n" + "\n\n".join(found)
+    assert not found, f"{len(found)} of 500\n" + "\n\n".join(found)
 
 
 def test_the_random_words_say_enough() -> None:

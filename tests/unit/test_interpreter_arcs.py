@@ -8,7 +8,7 @@ import pytest
 
 from polycnc.kernel import segment_point
 from polycnc.nc import DIALECTS, load_dialect
-from polycnc.nc.dialect._dialect import Arcs
+from polycnc.nc.dialect._arc_settings import Arcs
 from support.programs import AXIS, MILL, accepted, machine_config, moves, notes, prepare, refusal
 
 

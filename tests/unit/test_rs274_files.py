@@ -225,6 +225,14 @@ def test_an_ini_file_brings_its_tools_parameters_folders_and_numbers(
     assert end == pytest.approx([12.5 + 2 * scale, 4.0])
 
 
+def test_a_negative_diameter_of_the_table_compensates_on_the_other_side(tmp_path: Path) -> None:
+    """As LinuxCNC has it: along Z a G41 goes 2 mm above X20, with D-4 below (G54 is at X2)."""
+    config, _ = made(tmp_path, table="T3 P1 D-4\nT4 P2 D4\n")
+    assert [config.tools[number].radius_mm for number in (3, 4)] == [2.0, 2.0]
+    program = "G18 G41 D{} G1 F600 X10 Z1\nX20\nG91 Z30\nZ9"
+    assert [ends(program.format(tool), config)[0] for tool in (3, 4)] == pytest.approx([20.0, 24.0])
+
+
 @pytest.mark.parametrize(
     "line", ["T3 P1 Zx", "T3.5 P1", "P1 Z3", "T3 Q12", "hello", f"T3 Z{9:9<400}", f"T{9:9<400}"]
 )

@@ -6,7 +6,7 @@ import re
 from dataclasses import dataclass
 
 from polycnc.editor._place import Span, is_statement, words_only
-from polycnc.nc import Dialect, MAction
+from polycnc.nc import Action, Dialect, MAction
 from polycnc.nc.cpl import FUNCTION_GROUPS, STATEMENTS
 from polycnc.nc.macro import FUNCTIONS as MACRO_FUNCTIONS
 from polycnc.nc.macro import OPERATORS as MACRO_OPERATORS
@@ -57,7 +57,9 @@ def completions(lines: list[str], line: int, character: int, dialect: Dialect) -
     if begun is None:
         return _functions(before, dialect) if _NAME_BEGUN.search(before) else []
     if begun[1].upper() == "G":
-        return [Completion(f"G{code:g}", each.sentence) for code, each in sorted(dialect.g_codes().items())]
+        return [
+            Completion(f"G{code:g}", _does(each, dialect)) for code, each in sorted(dialect.g_codes().items())
+        ]
     codes = sorted({int(code) for code in dialect.m})
     return [Completion(f"M{code}", _plain(dialect.m_action(code))) for code in codes]
 
@@ -102,9 +104,22 @@ def _described(letter: str, code: float, dialect: Dialect) -> str:
     row = dialect.g_action(code)
     if row is None:
         return f"{name}: no G code of dialect {dialect.name}"
-    words = " ".join(_word(each, dialect) for each in row.takes)
+    words = " ".join(_word(each, dialect) for each in row.takes if _is_taken(each, row, dialect))
     taken = f"  \nWords: {words}" if words else ""
-    return f"{name} ({dialect.name}): {row.sentence}  \nGroup: {row.group}{taken}"
+    return f"{name} ({dialect.name}): {_does(row, dialect)}  \nGroup: {row.group}{taken}"
+
+
+def _rounds(row: Action, dialect: Dialect) -> bool:
+    """Tell whether words of a straight move round or chamfer the corner after it."""
+    return row is not Action.LINEAR or dialect.corner_words
+
+
+def _does(row: Action, dialect: Dialect) -> str:
+    return row.sentence if _rounds(row, dialect) else row.sentence.partition(";")[0]
+
+
+def _is_taken(word: str, row: Action, dialect: Dialect) -> bool:
+    return word not in ("R", "C") or _rounds(row, dialect)
 
 
 def _word(word: str, dialect: Dialect) -> str:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -46,7 +45,7 @@ def findings(
     What concerns another file, like a sub-program, stands in the first line and names its place.
 
     Raises:
-        TooLong: It took more than `longest_s` of computing; without that, a check of more than 20 s is a finding.
+        TooLong: It took more than `longest_s` of computing; without that, one of more than 20 s is a finding.
     """
     folder = Path(name).parent
     lines = document.lines
@@ -63,13 +62,13 @@ def findings(
             machine,
             dialect,
             root=folder if folder.is_dir() else None,
-            progress=within(longest_s, go_on, time.thread_time) if longest_s else within(LONGEST_S, go_on),
+            progress=within(longest_s or LONGEST_S, go_on),
             rehearse=longest_s is None,
         )
     except TooLong:
         if longest_s is not None:
             raise
-        what = f"the check was ended after {LONGEST_S:g} s, before the end of the program\nDoes it loop without end?"
+        what = f"the check was ended after {LONGEST_S:g} s of computing\nDoes the program loop without end?"
         return [Finding(_span(None, lines), what, "", False)]
     except PolycncError as error:
         return [Finding(_span(None, lines), str(error), "", True)]

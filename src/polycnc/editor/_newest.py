@@ -16,7 +16,7 @@ GoOn = Callable[[], None]
 
 
 LONGEST_S = 20.0
-"""How long one text may be looked at; a program can loop without end."""
+"""How long one text may be computed on, however busy the computer is; a program can loop without end."""
 
 
 class Overtaken(Exception):  # noqa: N818  it is no error
@@ -27,15 +27,13 @@ class TooLong(Exception):  # noqa: N818  it is no error
     """A text has been looked at for as long as it may be."""
 
 
-def within(
-    time_s: float, go_on: GoOn, clock: Callable[[], float] = time.monotonic
-) -> Callable[[float], None]:
-    """Return what ends work as `go_on` does, and by `TooLong` after a time."""
-    until = clock() + time_s
+def within(time_s: float, go_on: GoOn) -> Callable[[float], None]:
+    """Return what ends the work of this thread as `go_on` does, and by `TooLong` after so much computing."""
+    until = time.thread_time() + time_s
 
     def progress(_: float) -> None:
         go_on()
-        if clock() > until:
+        if time.thread_time() > until:
             raise TooLong
 
     return progress

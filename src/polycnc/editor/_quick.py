@@ -1,7 +1,7 @@
 """The first answer to a change of a long program: what is known already, and what the changed lines are by themselves.
 
-The changed lines are checked after what sets the state of the control before them: plain moves far above are left
-out. So this is not the last word; the check of the whole text, which follows, is.
+The changed lines are checked after what sets the state of the control before them: plain moves and arcs far above are
+left out. So this is not the last word; the check of the whole text, which follows, is.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ _MOST_CHANGED = 200
 _WHOLE_BEFORE = 100
 _LONGEST_S = 0.15  # of computing
 _BEYOND_PLAIN = re.compile(
-    r"^(?![ \t]*(?:N[0-9]+[ \t]*)?(?:G0?[01][ \t]*)?(?:[XYZABC][ \t]*[-+]?[0-9.]+[ \t]*)+$).*[^\s].*$",
+    r"^(?![ \t]*(?:N[0-9]+[ \t]*)?(?:G0?[0-3][ \t]*)?(?:[XYZABCIJKR][ \t]*[-+]?[0-9.]+[ \t]*)+$).*[^\s].*$",
     re.MULTILINE | re.IGNORECASE,
 )
 

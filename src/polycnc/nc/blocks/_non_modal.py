@@ -201,14 +201,14 @@ def _home_of(
     """Return where the named axes, all if there are none, are at home: those of the turned work offset, if it turns."""
     if not named:
         return home
-    turn, p, q = block.after.coordinates.turn, middle, home
+    turn = block.after.coordinates.turn
     zero = block.after.modal.offset.tolist()
+    places = [list(middle), list(home)]
     if turn is not None:
-        p, q = (
-            block.after.frame.back([at - of for at, of in zip(each, zero, strict=True)])
-            for each in (middle, home)
-        )
-    chosen = [q[axis] if axis in named else at for axis, at in enumerate(p)]
+        places = [
+            block.after.frame.back([at - of for at, of in zip(each, zero, strict=True)]) for each in places
+        ]
+    chosen = [there if axis in named else at for axis, (at, there) in enumerate(zip(*places, strict=True))]
     if turn is None:
         return tuple(chosen)
     return tuple(at + of for at, of in zip(block.after.frame.forward(chosen), zero, strict=True))

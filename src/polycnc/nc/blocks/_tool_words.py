@@ -56,11 +56,11 @@ def _compensate_along_z(block: BlockContext, g: GWord | None) -> None:
                 "tool length compensation on a machine without a Z axis", "Remove it.", g.word
             )
         return
+    tool = block.after.tool if h_word is None else whole_number(h_word, "a tool offset number", block.problem)
     if sign == 0:
         state.place_zero(coordinates.with_length({}, 0))
         block.after.length_tool = 0
         return
-    tool = block.after.tool if h_word is None else whole_number(h_word, "a tool offset number", block.problem)
     data = tool_data(block, tool)
     block.after.length_tool = tool
     shift = {axis: sign * (data.length_mm + data.wear_length_mm)}

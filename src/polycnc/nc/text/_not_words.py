@@ -42,8 +42,8 @@ def syntax_hint(line: str, rules: TextRules) -> SyntaxHint | None:
     `line` is one character a byte. A comma in a number and letters without a number are slips.
     """
     code = _without_comments(line, rules)
-    if found := _HASH_REMARK.match(code):
-        return SyntaxHint(found.end() - 1, "# begins no remark", "Write remarks in brackets: (remark).")
+    if hash_mark := _HASH_REMARK.match(code):
+        return SyntaxHint(hash_mark.end() - 1, "# begins no remark", "Write remarks in brackets: (remark).")
     if _MARKS.search(code) or _KEYWORDS.search(code):
         return None
     finders = (_decimal_comma, _letters_and_commas)

@@ -141,6 +141,8 @@ def _tool(
     ):
         if value := words.get(letter, 0.0):
             tool[key] = (abs(value) if letter == "D" else value) * scale
+    if words.get("D", 0.0) < 0.0:  # G41 goes to the right of the contour, G42 to the left
+        tool["wear_radius_mm"] = words["D"] * to_mm
     if tip := _TIPS[whole("Q", 9)]:
         tool["tip"] = tip
     if text:
