@@ -1,6 +1,7 @@
 """Measure fleets: what many machines cost at 1x, and whether their clocks are on time.
 
 The processor is counted against the time that passed in the machines, so it is right on a computer that is late, too.
+Lateness is by the wall clock: how long the processes waited for a core that others had stands beside it.
 """
 
 from __future__ import annotations
@@ -45,17 +46,19 @@ class Running:
             name, _, at = self.process.stdout.readline().partition(": ")
             self.said[name] = at.strip()
 
-    def cpu_s(self) -> float:
-        """Return the processor time of all its processes."""
-        total = 0
+    def spent_s(self) -> tuple[float, float]:
+        """Return the processor time of all its processes, and how long they waited for a core."""
+        ticks = waited_ns = 0
         for stat in Path("/proc").glob("[0-9]*/stat"):
             try:
                 fields = stat.read_text().rpartition(")")[2].split()
+                if self.process.pid not in (int(stat.parent.name), int(fields[1])):
+                    continue
+                waited_ns += int(stat.with_name("schedstat").read_text().split()[1])
             except OSError:
                 continue
-            if self.process.pid in (int(stat.parent.name), int(fields[1])):
-                total += int(fields[11]) + int(fields[12])
-        return total / TICKS
+            ticks += int(fields[11]) + int(fields[12])
+        return ticks / TICKS, waited_ns / 1e9
 
     def figures(self, page: str) -> tuple[float, float]:
         """Return the worst lateness since this was asked last, and the time of all machines together."""
@@ -110,14 +113,14 @@ def _fleet(count: int, processes: int, for_s: float, *, asked: bool) -> list[Fig
     try:
         time.sleep(SETTLE_S if asked else FORGOTTEN_S)
         _, begin_s = running.figures(running.said["metrics"])
-        before = running.cpu_s()
+        before_s, waited_before_s = running.spent_s()
         if asked:
             asyncio.run(_asked(running.said, for_s))
         else:
             time.sleep(for_s)
-        used_s = running.cpu_s() - before
+        after_s, waited_s = running.spent_s()
         late_s, end_s = running.figures(running.said["metrics"])
-        share = used_s / (end_s - begin_s) * count * 100.0
+        share = (after_s - before_s) / (end_s - begin_s) * count * 100.0
     finally:
         running.end()
     whose = "each asked once a second" if asked else "that nobody asks"
@@ -125,6 +128,7 @@ def _fleet(count: int, processes: int, for_s: float, *, asked: bool) -> list[Fig
     return [
         at_most(f"{what}: worst lateness", late_s, "s", 0.05),
         Figure(f"{what}: processor", share, "% of a core"),
+        Figure(f"{what}: waited for a core", waited_s - waited_before_s, "s"),
     ]
 
 
@@ -135,17 +139,18 @@ def _one(count: int, for_s: float, *, runs: bool) -> list[Figure]:
         time.sleep(SETTLE_S)
         page = f"{running.said['http']}/metrics"
         _, begin_s = running.figures(page)
-        before = running.cpu_s()
+        before_s, waited_before_s = running.spent_s()
         asyncio.run(_polled(port, count, for_s))
-        used_s = running.cpu_s() - before
+        after_s, waited_s = running.spent_s()
         late_s, end_s = running.figures(page)
-        share = used_s / (end_s - begin_s) * count * 100.0
+        share = (after_s - before_s) / (end_s - begin_s) * count * 100.0
     finally:
         running.end()
     what = f"{count} {'running' if runs else 'idle'} machines in one process, three clients each"
     return [
         at_most(f"{what}: processor", share, "% of a core", 20.0),
         at_most(f"{what}: worst lateness", late_s, "s", 0.02),
+        Figure(f"{what}: waited for a core", waited_s - waited_before_s, "s"),
     ]
 
 

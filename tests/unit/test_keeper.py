@@ -206,3 +206,28 @@ def test_a_machine_that_is_asked_needs_no_beats() -> None:
     for device in devices:
         assert abs(device.clock.now_s - 3.1) < 0.11 + 2 * CYCLE_S
         assert len(device.passed) <= 3.1 / 0.11 + 2
+
+
+def test_steps_that_take_long_are_gone_on_with_though_somebody_has_just_asked() -> None:
+    wall = Wall()
+    loop = _AtOnce(wall)
+
+    async def run() -> float:
+        device = Slow(wall, cost_s=0.02)  # a cycle each time, beyond its share
+        keeper = Keeper(device, wall, rate=0.0)
+        keeper.start()
+        await asyncio.sleep(1.07)
+        for _ in range(3):
+            keeper.submit(lambda: None, lambda _: None)
+        keeper.pace.step(9)
+        keeper.submit(lambda: None, lambda _: None)
+        begun_s = wall.time_s
+        while device.clock.cycles < 9:
+            await asyncio.sleep(0)
+        keeper.close()
+        return wall.time_s - begun_s
+
+    try:
+        assert loop.run_until_complete(run()) < 9 * 0.02 + 0.05
+    finally:
+        loop.close()

@@ -61,9 +61,12 @@ def served(name: str, visit: Callable[[Client, ServedMachine], Awaitable[None]])
 def test_it_is_read_once_and_answered_as_it_is_by_then(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
     read: list[bytes] = []
     receive = h11.Connection.receive_data
-    monkeypatch.setattr(
-        h11.Connection, "receive_data", lambda self, data: (read.append(data), receive(self, data))[1]
-    )
+
+    def received(self: h11.Connection, data: bytes) -> None:
+        read.append(data)
+        receive(self, data)
+
+    monkeypatch.setattr(h11.Connection, "receive_data", received)
 
     async def visit(client: Client, machine: ServedMachine) -> None:
         first = await client.ask()
@@ -82,6 +85,10 @@ def test_it_is_read_once_and_answered_as_it_is_by_then(name: str, monkeypatch: p
         assert (await client.ask(client.question * 2))[1] == changed
         assert (await client.answer())[1] == changed
         assert (await client.ask())[1] == changed
+        longer = client.question.replace(b"\r\n\r\n", b"\r\nContent-Length: 5\r\n\r\nab")
+        for _ in range(2):
+            assert (await client.ask(longer))[1] == changed
+            client.writer.write(b"cde")
         closing = client.question.replace(b"\r\n\r\n", b"\r\nConnection: close\r\n\r\n")
         head, last = await client.ask(closing)
         assert b"connection: close" in head.lower()
@@ -116,9 +123,9 @@ def test_a_scenario_and_a_failure_come_first(name: str) -> None:
 
 def test_each_is_counted() -> None:
     async def visit(client: Client, _: ServedMachine) -> None:
-        for _ in range(3):
+        for _k in range(3):
             await client.ask()
-        _, figures = await client.ask(b"GET /metrics HTTP/1.1\r\nHost: localhost\r\n\r\n")
-        assert b'polycnc_http_requests_total{status="200"} 3.0' in figures
+        figures = await client.ask(b"GET /metrics HTTP/1.1\r\nHost: localhost\r\n\r\n")
+        assert b'polycnc_http_requests_total{status="200"} 3.0' in figures[1]
 
     served("http", visit)

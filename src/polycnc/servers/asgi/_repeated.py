@@ -14,6 +14,8 @@ from starlette.types import Scope
 
 AGAIN = "again"
 _END = b"\r\n\r\n"
+_MORE = frozenset({b"content-length", b"transfer-encoding", b"expect", b"upgrade"})
+"""Headers of questions that do not end with their headers."""
 
 
 class Said(NamedTuple):
@@ -57,7 +59,9 @@ class Repeated:
 def repeated_of(question: bytes, scope: Scope) -> Repeated | None:
     """Return what a question that was answered needs to be answered again; None where it cannot be."""
     again = again_of(scope)
+    if again is None or scope["method"] != "GET":
+        return None
     is_whole = question.endswith(_END) and question.count(_END) == 1
-    if again is None or not is_whole or scope["method"] != "GET":
+    if not is_whole or any(name in _MORE for name, _ in scope["headers"]):
         return None
     return Repeated(question, again)

@@ -92,6 +92,9 @@ class Keeper:
         turns: Turns | None = None,
     ) -> None:
         self._turns = turns or Turns(wall, math.inf)
+        self._asked_s = (
+            -math.inf
+        )  # when nothing was left to be done before a request, and nothing has come since
         self.pace = Pace(wall, rate, changed=self._soon)
         self._wall = wall
         self._share_s = share_s
@@ -101,7 +104,6 @@ class Keeper:
         self._timer: asyncio.TimerHandle | None = None
         self._due_s = math.inf  # when the next beat is planned, by the event loop
         self._latest_s = 0.0
-        self._asked_s = -math.inf  # when nothing was left to be done before a request
         self._rests_until_s = -math.inf
         self._has_changed = False
         self.pace.forget()
@@ -117,8 +119,8 @@ class Keeper:
         if self.failed.done():
             return False
         try:
-            if self._is_wanted() and not self._catch_up():
-                self._asked_s = self._wall.now_s()
+            if self._is_wanted():
+                self._asked_s = -math.inf if self._catch_up() else self._wall.now_s()
             result = command()
         except Exception as error:
             self._fail(error)
@@ -188,6 +190,7 @@ class Keeper:
         now_s = asyncio.get_running_loop().time()
         self._latest_s = max(self._latest_s, now_s - self._due_s)
         if late:
+            self._asked_s = -math.inf
             self._due_s = min(self._due_s, now_s)
             self._turns.wait(self._beat)
         else:
@@ -208,6 +211,7 @@ class Keeper:
     def _soon(self) -> None:
         """Look soon: the rate has changed, or steps are due."""
         self._has_changed = True
+        self._asked_s = -math.inf
         if self._timer is not None:
             self._timer.cancel()
             self._turns.wait(self._beat)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Container, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from xml.sax.saxutils import escape, quoteattr
@@ -20,6 +20,7 @@ _ORDER = {"SAMPLE": 0, "EVENT": 1, "CONDITION": 2}
 _GROUPS = {"SAMPLE": "Samples", "EVENT": "Events", "CONDITION": "Condition"}
 _CONDITION_ID_SINCE, _TYPED_ERRORS_SINCE, _MODEL_TIME_SINCE = (2, 3), (2, 6), (1, 7)
 _NO_MESSAGE_CODE_SINCE = (2, 7)
+_MOST_ORDERS = 256  # sets of items whose order is remembered
 
 
 @dataclass(frozen=True, slots=True)
@@ -122,15 +123,23 @@ class StreamWriter:
                 for item in sorted(component.items, key=lambda each: _ORDER[each.category]):
                     self._slots[item] = _Slot(device, component, begin, len(self._slots), *_opening(item))
         self._written: dict[Item, tuple[tuple[Observation, ...], str]] = {}
+        self._orders: dict[frozenset[Item], tuple[Item, ...]] = {}
 
     def current(
-        self, state: Mapping[Item, tuple[Observation, ...]], wanted: Container[Item]
+        self, state: Mapping[Item, tuple[Observation, ...]], wanted: frozenset[Item]
     ) -> Iterator[str]:
         """Return what holds, of the wanted items; what was written before is not written anew."""
-        shown = (
-            (item, self._known(item, state[item])) for item in self._slots if item in wanted and item in state
-        )
+        shown = ((item, self._known(item, state[item])) for item in self._in_order(wanted) if item in state)
         yield from self._streams(shown)
+
+    def _in_order(self, wanted: frozenset[Item]) -> tuple[Item, ...]:
+        """Return the wanted items as they are written: those of one machine, however many others there are."""
+        if wanted not in self._orders:
+            if len(self._orders) >= _MOST_ORDERS:
+                self._orders.clear()
+            ranks = {item: slot.rank for item in wanted if (slot := self._slots.get(item)) is not None}
+            self._orders[wanted] = tuple(sorted(ranks, key=ranks.__getitem__))
+        return self._orders[wanted]
 
     def sample(self, seen: Iterable[Observation]) -> Iterator[str]:
         """Return observations, of each item in their order."""
