@@ -5,10 +5,12 @@ from __future__ import annotations
 import asyncio
 import os
 import random
+from collections.abc import Callable
 from typing import Any
 
 import pytest
 
+from polycnc.controllers.fanuc import PowerMate
 from polycnc.servers.machines import ServedMachine
 from polycnc.servers.process import Machinery
 from support.http_app import visit
@@ -34,7 +36,7 @@ class Person:
         self._client, self._machine, self._seen = client, machine, seen
         self._chance = random.Random(10 * seed + number)
         self._program = f"O006{number}"
-        self._own = {
+        self._own: dict[str, tuple[str, Callable[[Any], Any]]] = {
             f"/variables/%2350{number}": ("value", lambda told: told["value"]),
             f"/offsets/G5{4 + number}": ("X", lambda told: told[f"G5{4 + number}"]["X"]),
             f"/tools/{1 + number}": ("length_mm", lambda told: told[str(1 + number)]["length_mm"]),
@@ -100,10 +102,10 @@ class Person:
 @pytest.mark.parametrize("kind", ["plain", "fanuc"])
 def test_nobody_loses_what_was_acknowledged(kind: str) -> None:
     async def visitor(client: Any, machine: ServedMachine) -> None:
-        control, seen = machine.control, Seen()
+        control, seen, device = machine.control, Seen(), machine.device
         assert control is not None
-        if kind == "fanuc":
-            machine.device.protect_key(False)
+        if isinstance(device, PowerMate):
+            device.protect_key(False)
         for seed in SEEDS:
             cycle = control.status().cycle
             await asyncio.gather(*(Person(n, client, machine, seen, seed).work() for n in range(2)))
