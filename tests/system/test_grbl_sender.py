@@ -105,10 +105,9 @@ def cncjs(folder: Path) -> Iterator[str]:
     with socket.create_server(("127.0.0.1", 0)) as free:
         port = str(free.getsockname()[1])
     (folder / "cncjs.json").write_text("{}")
-    command = [NODE / "cncjs" / "bin" / "cncjs", "-H", "127.0.0.1", "-p", port, "-c", folder / "cncjs.json"]
-    with subprocess.Popen(
-        ["node", *command], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True
-    ) as server:
+    program, settings = NODE / "cncjs" / "bin" / "cncjs", folder / "cncjs.json"
+    command = ["node", str(program), "-H", "127.0.0.1", "-p", port, "-c", str(settings)]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True) as server:
         try:
             assert any("Starting the server" in line for line in server.stdout or ())
             yield f"http://127.0.0.1:{port}"
