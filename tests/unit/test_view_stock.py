@@ -149,7 +149,7 @@ def test_a_body_that_turns_has_shares_of_its_cells(monkeypatch: pytest.MonkeyPat
         cutting.add(machined.course.at(np.flatnonzero(machined.course.t_s <= until_s)))
         shares, (nz, ny, nx) = _field(film, until_s), solid.cells.shape
         shown = np.repeat(np.repeat(np.repeat(shares, 2, 0), 2, 1), 2, 2)[:nz, :ny, :nx].sum()
-        assert 0.0 < shown == pytest.approx(float(solid.cells.sum()), abs=8.0)  # of the chords
+        assert 0.0 < shown == pytest.approx(float(solid.cells.sum()) / Voxels.FULL, abs=8.0)  # of the chords
     assert shown < film.begin.size * 8
 
 

@@ -181,7 +181,10 @@ def _collisions(text: ProgramText, settings: RunSettings) -> list[Remark]:
         return [Remark("no_stock", error.what, begin)]
     if machined is None:
         return []
-    unknown = [Remark("unknown_tool", each, begin) for each in machined.messages[1:]]
+    unknown = [
+        Remark("no_stock" if each == machined.missed else "unknown_tool", each, begin)
+        for each in machined.messages[1:]
+    ]
     wrong = [
         Remark(each.kind.name.lower(), str(each), each.position or begin) for each in machined.collisions
     ]

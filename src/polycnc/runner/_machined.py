@@ -69,7 +69,8 @@ class Machined:
     `idle` are blocks that feed through air for long, `idle_s` is how long tools fed without removing anything;
     `comparison` is with the target.
     `removed_mm3` [blocks] belongs to `blocks`; `engagement` is how hard tools cut when. `messages` say what was
-    assumed. The body of `form` was cut by `tools` on their `course`, from `zero_mm` in machine coordinates.
+    assumed. The body of `form` was cut by `tools` on their `course`, from `zero_mm` in machine coordinates. `missed`
+    says where it lies and where tools have cut, if none has met it.
     """
 
     stock: Stock | Turned | Voxels
@@ -86,6 +87,7 @@ class Machined:
     course: Rows
     tools: Mapping[int, Tool | Insert]
     zero_mm: tuple[float, float, float]
+    missed: str = ""
 
     @property
     def volume_mm3(self) -> float:

@@ -194,6 +194,7 @@ class MachiningCollector:
         removed = np.zeros(len(blocks))
         known = tally.by_block_mm3[: len(blocks)]
         removed[: len(known)] = known
+        missed = "" if removed.any() or tally.unknown_tools else self._missed(stock, course)
         return Machined(
             stock=stock,
             blocks=blocks,
@@ -218,11 +219,13 @@ class MachiningCollector:
                 f"stock: {stock}, {stock.cell_mm:g} mm a cell{self._said}",
                 *self._notes,
                 *map(self._cuts_nothing, sorted(tally.unknown_tools)),
+                *([missed] if missed else []),
             ],
             form=form,
             course=course,
             tools=tools,
             zero_mm=self._zero_mm(),
+            missed=missed,
         )
 
     def _cuts_nothing(self, tool: int) -> str:
@@ -241,3 +244,16 @@ class MachiningCollector:
             f"the shape of tool {tool} is not known: it cuts nothing here; a comment like {shape}"
             " or [tools] of the machine file tells it"
         )
+
+    def _missed(self, stock: Stock | Turned | Voxels, course: Rows) -> str:
+        """Say where a body lies that no tool has met, and where they have cut; nothing if they have not."""
+        cuts = np.flatnonzero(~course.rapid[1:] & np.any(course.tip[1:] != course.tip[:-1], axis=1))
+        if not len(cuts):
+            return ""
+        tips = np.concatenate((course.tip[cuts], course.tip[cuts + 1]))
+        low, high = tips.min(axis=0).tolist(), tips.max(axis=0).tolist()
+        lies, cut = (
+            ", ".join(f"{name}{a:.5g} to {name}{b:.5g}" for name, a, b in zip("XYZ", *ends, strict=True))
+            for ends in ((stock.box.low, stock.box.high), (low, high))
+        )
+        return f"no tool meets the stock: it lies at {lies}, and they cut at {cut} (mm from the work offset)"

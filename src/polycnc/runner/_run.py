@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import replace
 from pathlib import Path
-from typing import Literal, overload
+from typing import TYPE_CHECKING, Literal, overload
 
 from polycnc.cnc import ProgramRun, RunOptions
 from polycnc.errors import ProgramError
@@ -21,6 +21,10 @@ from polycnc.runner._remarks import empty_remark, times_remark
 from polycnc.runner._result import RunResult, TracedResult
 from polycnc.runner._settings import RunSettings, program_text
 from polycnc.runner._trace import TraceCollector
+
+if TYPE_CHECKING:
+    from polycnc.runner._machining import MachiningCollector
+    from polycnc.stock import Form
 
 
 @overload
@@ -214,14 +218,26 @@ def run_program(
         _result(execution, log, collector, stuck), guessed=chosen.reason, refused_s=log.refused_s
     )
     if form is not None and machining is not None:
-        machined = machining.machined(form)
-        notes = [RunMessage(text, 0, 1) for text in machined.messages]
-        result = replace(result, machined=machined, messages=[*result.messages, *notes])
+        result = _with_stock(result, machining, form)
     if control is not None:
         result.variables.update(control.variables())
     if check:
         result.raise_for_alarms()
     return result
+
+
+def _with_stock(result: RunResult, machining: MachiningCollector, form: Form) -> RunResult:
+    """Return a result with what was cut; after an alarm before the first cut without."""
+    from polycnc.stock import NoStockError
+
+    try:
+        machined = machining.machined(form)
+    except NoStockError as error:
+        if result.ok:
+            raise
+        return replace(result, messages=[*result.messages, RunMessage(error.what, 0, 1)])
+    notes = [RunMessage(text, 0, 1) for text in machined.messages]
+    return replace(result, machined=machined, messages=[*result.messages, *notes])
 
 
 def _remark(execution: ProgramRun, text: ProgramText, times: str | None) -> None:

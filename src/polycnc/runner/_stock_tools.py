@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import replace
 
 from polycnc.errors import UsageError
@@ -33,19 +34,27 @@ def tools_of(config: MachineConfig, texts: Mapping[str, ProgramText]) -> dict[in
         if described is not None:
             tools[number] = described
         elif each.radius_mm > 0.0:
-            tools[number] = Tool(ToolKind.FLAT, 2.0 * each.radius_mm)
+            with _named(number, config):
+                tools[number] = Tool(ToolKind.FLAT, 2.0 * each.radius_mm)
     for text in texts.values():
         inch = _is_inch(text)
         for number, remark in remarks_of_tools(text):
             if (found := tool_of_remark(remark, inch=inch)) is not None:
                 tools[number] = found
     for number, each in config.tools.items():
-        try:
+        with _named(number, config):
             if (whole := _whole(tools.get(number), each)) is not None:
                 tools[number] = whole
-        except UsageError as error:
-            raise UsageError(f"tool {number} of '{config.name}': {error.what}", hint=error.hint) from None
     return tools
+
+
+@contextmanager
+def _named(number: int, config: MachineConfig) -> Iterator[None]:
+    """Name a tool of the machine file in what is wrong with it."""
+    try:
+        yield
+    except UsageError as error:
+        raise UsageError(f"tool {number} of '{config.name}': {error.what}", hint=error.hint) from None
 
 
 def _is_inch(text: ProgramText) -> bool:

@@ -26,7 +26,7 @@ _RIM_CELLS = 1.0
 
 
 class TurnedCutting:
-    """Let tools cut a body of points (see `tally`), each with the axis that its rows have.
+    """Let tools cut a body of cells (see `tally`), each with the axis that its rows have.
 
     Depths are how far up the tool the material is. A tool that is not among `tools` cuts nothing.
     """

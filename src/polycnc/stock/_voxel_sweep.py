@@ -1,4 +1,4 @@
-"""Move a tool with a turning axis through a grid of points: those that get into it are removed.
+"""Move a tool with a turning axis through a grid of cells: what gets into it is removed, at its surface in part.
 
 Between two rows of a record the tool is set down so often that no point of it goes farther than a share of a cell.
 """
@@ -11,7 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from polycnc.kernel import compiled, entry
-from polycnc.stock._profile import TO_R
+from polycnc.stock._profile import ARC_R, BEGIN_Z, CENTRE_R, CENTRE_Z, FROM_R, SLOPE, TO_R
 from polycnc.stock._sweep import AT_X, AT_Y, DEPTH_MM, VOLUME_MM3, level
 
 Floats = npt.NDArray[np.float64]
@@ -19,8 +19,62 @@ Cells = npt.NDArray[np.uint8]
 
 AT_Z = AT_Y + 1
 VOXEL_FIGURES = AT_Z + 1
+FULL = 250
+"""What a cell holds that is full of material."""
 _STEP_CELLS = 0.5
 _EVEN = 1e-12
+
+
+@compiled
+def _square_to(r: float, z: float, r0: float, z0: float, r1: float, z1: float) -> float:
+    """Return the square of the way from a place to a line between two others."""
+    along_r, along_z = r1 - r0, z1 - z0
+    length2 = along_r * along_r + along_z * along_z
+    share = 0.0
+    if length2 > 0.0:
+        share = min(max(((r - r0) * along_r + (z - z0) * along_z) / length2, 0.0), 1.0)
+    return (r0 + share * along_r - r) ** 2 + (z0 + share * along_z - z) ** 2
+
+
+@compiled
+def _square_to_outline(rows: Floats, r: float, z: float, last_z: float) -> float:
+    """Return the square of the way to an outline, with walls between its pieces and up to `last_z`."""
+    found, end = math.inf, math.inf
+    for n in range(rows.shape[0]):
+        r0, r1 = rows[n, FROM_R], rows[n, TO_R]
+        if rows[n, ARC_R] > 0.0:
+            begin, after = rows[n, CENTRE_Z] - rows[n, ARC_R], rows[n, CENTRE_Z]
+            if r >= rows[n, CENTRE_R] and z <= rows[n, CENTRE_Z]:
+                away = math.hypot(r - rows[n, CENTRE_R], z - rows[n, CENTRE_Z]) - rows[n, ARC_R]
+                found = min(found, away * away)
+        else:
+            begin = rows[n, BEGIN_Z]
+            after = begin + rows[n, SLOPE] * (r1 - r0)
+            if begin < math.inf:
+                found = min(found, _square_to(r, z, r0, begin, r1, after))
+        if end < math.inf and begin < math.inf:
+            found = min(found, _square_to(r, z, r0, end, r0, begin))
+        end = after if begin < math.inf else math.inf
+    wide = rows[rows.shape[0] - 1, TO_R]
+    return float(min(found, _square_to(r, z, wide, end, wide, last_z)))
+
+
+@compiled
+def _outside(rows: Floats, tops: Floats, height: float, r: float, z: float) -> float:
+    """Return how far a place is outside of a tool (mm), below zero in it, at `r` from its axis and `z` up."""
+    wide = rows[rows.shape[0] - 1, TO_R]
+    inside = r <= wide and 0.0 <= z <= height and z >= level(rows, r)
+    last = height
+    if tops.shape[0] > 0:
+        at = tops.shape[0] - 1
+        inside = inside and z <= level(tops, r)
+        last = tops[at, BEGIN_Z] + tops[at, SLOPE] * (tops[at, TO_R] - tops[at, FROM_R])
+    found = _square_to_outline(rows, r, z, last)
+    if tops.shape[0] > 0:
+        found = min(found, _square_to_outline(tops, r, z, last))
+        wide = tops[0, TO_R]
+    found = math.sqrt(min(found, _square_to(r, z, 0.0, height, wide, height)))
+    return float(-found if inside else found)
 
 
 @compiled
@@ -38,13 +92,15 @@ def _remove(
     last: npt.NDArray[np.int64],
     end: Floats,
 ) -> None:
-    """Look at, or remove, the points in a tool: `figures` [8] has the tool's height last.
+    """Look at, or take from cells, what is in a tool: `figures` [8] has the tool's height last.
 
-    `begin` and `last` [3] are room for places, `end` [6] is tip and axis at the end of the way.
+    `begin` and `last` [3] are room for places, `end` [6] is tip and axis at the end of the way. What is left of a cell
+    is by how far its middle is from the surface of the tool.
     """
-    radius, height = rows[rows.shape[0] - 1, TO_R], figures[VOXEL_FIGURES]
+    around = 0.5 * cell_mm
+    radius, height = rows[rows.shape[0] - 1, TO_R] + around, figures[VOXEL_FIGURES]
     for i in range(3):
-        reach = radius * math.sqrt(max(0.0, 1.0 - axis[i] * axis[i]))
+        reach = radius * math.sqrt(max(0.0, 1.0 - axis[i] * axis[i])) + around * abs(axis[i])
         top = tip[i] + height * axis[i]
         begin[i] = max(0, math.ceil((min(tip[i], top) - reach - first[i]) / cell_mm))
         last[i] = min(cells.shape[2 - i] - 1, math.floor((max(tip[i], top) + reach - first[i]) / cell_mm))
@@ -68,23 +124,23 @@ def _remove(
             elif rest > 0.0:
                 continue
             for ix in range(first_x, last_x + 1):
-                if cells[iz, iy, ix] == 0:
-                    continue
-                dx = first[0] + ix * cell_mm - tip[0]
+                before, dx = int(cells[iz, iy, ix]), first[0] + ix * cell_mm - tip[0]
                 along = axis[0] * dx + up
-                if along < 0.0 or along > height:
+                if before == 0 or along < -around or along > height + around:
                     continue
                 beside2 = dx * dx + dy * dy + dz * dz - along * along
-                beside = math.sqrt(max(0.0, beside2))
-                if along < level(rows, beside) or (tops.shape[0] > 0 and along > level(tops, beside)):
+                outside = _outside(rows, tops, height, math.sqrt(max(0.0, beside2)), along)
+                left = max(0, math.floor(FULL * (0.5 + outside / cell_mm) + 0.5))
+                if left >= before:
                     continue
-                figures[VOLUME_MM3] += 1.0
-                depth = max(along, (first[0] + ix * cell_mm - end[0]) * end[3] + up_end)
-                if depth > figures[DEPTH_MM]:
-                    figures[DEPTH_MM] = depth
-                    figures[AT_X], figures[AT_Y], figures[AT_Z] = tip[0] + dx, tip[1] + dy, tip[2] + dz
+                figures[VOLUME_MM3] += (before - left) / FULL
+                if outside <= 0.0 and 2 * before > FULL:
+                    depth = max(along, (first[0] + ix * cell_mm - end[0]) * end[3] + up_end)
+                    if depth > figures[DEPTH_MM]:
+                        figures[DEPTH_MM] = depth
+                        figures[AT_X], figures[AT_Y], figures[AT_Z] = tip[0] + dx, tip[1] + dy, tip[2] + dz
                 if cuts:
-                    cells[iz, iy, ix] = 0
+                    cells[iz, iy, ix] = left
 
 
 @entry(steps=lambda cells, first, cell_mm, tips, *_: 2000 * len(tips))
@@ -103,10 +159,10 @@ def sweep_voxels(
 ) -> None:
     """Move a tool from each of `tips` [n + 1, 3] to the next, with its axis [n + 1, 3], upwards, turning along.
 
-    `cells` [along z, y, x] are 1 where there is material at `first + place * cell_mm`. The tool has the outline `rows`,
-    from `from_mm` above its tip, and is `height_mm` high; `tops` is where it ends above, empty where that is nowhere.
-    `figures` [n, 7] get volume, how far up the tool it met something, seen from the end of the way too, and where that
-    was.
+    `cells` [along z, y, x] are up to `FULL` where there is material around `first + place * cell_mm`. The tool has the
+    outline `rows`, from `from_mm` above its tip, and is `height_mm` high; `tops` is where it ends above, empty where
+    that is nowhere. `figures` [n, 7] get volume, how far up the tool it met something, seen from the end of the way
+    too, and where that was.
     """
     tip, axis, found = np.empty(3), np.empty(3), np.zeros(VOXEL_FIGURES + 1)
     begin, last, end = np.zeros(3, np.int64), np.zeros(3, np.int64), np.zeros(6)

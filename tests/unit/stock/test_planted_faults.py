@@ -161,6 +161,7 @@ def test_a_tool_of_the_machine_file_that_cannot_be_is_refused() -> None:
     for lines, wrong in (
         ('shape = "bull"\nradius_mm = 4\ncorner_mm = 5', "tool 3 of 'mill3': a corner radius of 5 mm"),
         ('shape = "ball"', "without a radius"),
+        ("radius_mm = 1e9", "tool 3 of 'mill3': a flat tool of 2e"),
     ):
         config = parse_machine(f"{preset_text('mill3')}\n[tools.3]\n{lines}\n", "m.toml")
         with pytest.raises(UsageError, match=wrong) as refused:

@@ -188,6 +188,7 @@ def test_a_check_says_what_it_could_not_look_at() -> None:
     assert "rapid" in keys(wrong)
     assert keys(PLATE.replace("(T1 D=10. CR=0. - flat end mill)\n", "")) == ["unknown_tool"]
     assert "no_stock" in keys("G0 X10\nM30\n", stock="auto")
+    assert "no_stock" in keys(PLATE, stock="box=500,0,-20,560,42,0")
     turned = (Path(__file__).resolve().parents[3] / "examples" / "five_axis.nc").read_text()
     assert "no_stock" in keys(turned, "mill5", "auto")
 
@@ -213,6 +214,16 @@ def test_a_machine_without_z_is_refused() -> None:
 def test_a_program_that_cuts_nothing_tells_no_stock() -> None:
     with pytest.raises(UsageError, match="cuts nothing"):
         machined("G0 X10\nM30\n", TOOLS, "auto")
+    stopped = runner.run("G0 X10 Q\nM30\n", "mill3", "fanuc", stock="auto", check=False)
+    assert (stopped.ok, stopped.machined) == (False, None)  # the alarm is what is to be said
+    assert stopped.messages[-1].text == "the program cuts nothing: no stock can be told"
+
+
+def test_stock_where_no_tool_comes_is_said() -> None:
+    found = runner.run(PLATE, "mill3", "fanuc", stock="box=500,0,-20,560,42,0", check=False).messages[-1]
+    assert found.text.startswith(
+        "no tool meets the stock: it lies at X500 to X560, Y0 to Y42, Z-20 to Z0, and they cut at"
+    )
 
 
 BORE = """(T1 D=18. - drill)

@@ -137,7 +137,7 @@ class _WatchedBar:
 
 
 class _WatchedSolid:
-    """Watch a grid of points: cells of the picture have the share of theirs that is left."""
+    """Watch a grid of cells: those of the picture have the share that is left in all of theirs."""
 
     kind = "solid"
 
@@ -151,7 +151,7 @@ class _WatchedSolid:
         self._long_mm = float(np.linalg.norm(np.subtract(solid.box.high, solid.box.low)))
         self._before = solid.cells.copy()
         self._left = self._sums(solid.cells)
-        self._all = self._sums(np.ones_like(solid.cells))
+        self._all = Voxels.FULL * self._sums(np.ones_like(solid.cells))
         self.begin = self._levels(np.arange(self._left.size)).reshape(self._left.shape)
 
     def changes(self, course: Rows, first: int, last: int) -> tuple[Places, Levels]:
@@ -161,11 +161,12 @@ class _WatchedSolid:
         gone = np.argwhere(now != before)
         if not len(gone):
             return np.zeros(0, np.int32), np.zeros(0, np.uint16)
+        taken = before[tuple(gone.T)].astype(np.int64) - now[tuple(gone.T)]
         before[...] = now
         gone = (gone + [each.start for each in part]) // self._several
         flat = np.ravel_multi_index((gone[:, 0], gone[:, 1], gone[:, 2]), self._left.shape)
-        cells, counts = np.unique(flat, return_counts=True)
-        self._left.ravel()[cells] -= counts
+        cells = np.unique(flat)
+        np.subtract.at(self._left.ravel(), flat, taken)
         return cells.astype(np.int32), self._levels(cells)
 
     def _reached(self, course: Rows, first: int, last: int) -> tuple[slice, slice, slice]:
