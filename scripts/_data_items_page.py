@@ -94,10 +94,10 @@ _TAIL = """
 
 A machine is looked at ten times a second of its own time while something is executed or moves, once a second
 otherwise, and before every answer. While no client has asked for a `sample` of it for a minute of its time, once a
-second is enough; in its first ten seconds it waits for one. The adapter of SHDR looks for agents that are connected. What differs from the last look is an observation with the
-machine's date and time, and a number. Numbers begin at 1 and never skip; the last 65,536 are held for all devices of a
-process. The same machine and the same requests at the same cycles give the same documents; only `instanceId` is
-new with each start.
+second is enough; in its first ten seconds it waits for one. The adapter of SHDR looks for agents that are connected.
+What differs from the last look is an observation with the machine's date and time, and a number. Numbers begin at 1
+and never skip; the last 65,536 are held for all devices of a process. The same machine and the same requests at the
+same cycles give the same documents; only `instanceId` is new with each start.
 
 ## Requests
 
