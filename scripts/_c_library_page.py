@@ -16,7 +16,7 @@ is C99 on sockets; nothing else of Python or polycnc is in the program's process
 | what | value |
 | --- | --- |
 | header | C11 and C++17; the sizes and offsets of all structures are asserted when it is compiled. `PC_LONG` has 32 bits: it is `long` where that has 32, else `int` |
-| where the machine is | the environment variable `POLYCNC_CALLS=HOST:PORT`; else the line `calls = "HOST:PORT"` of `polycnc.toml` beside the program; else 127.0.0.1:{PORT} |
+| where the machine is | the environment variable `POLYCNC_CALLS=HOST:PORT`; else the line `calls = "HOST:PORT"` of `polycnc.toml` beside the program, else beside the library; else 127.0.0.1:{PORT} |
 | names | exported as they are, without decoration, also in 32-bit Windows libraries, whose functions are `stdcall` |
 | structures | packed as the manuals have them; for programs made with later headers of `fwlib32`, which pack to 4 bytes, the library is written with `--packing 4`. A length counts the program's bytes: ranges of macro variables are `8 + 8 * n` instead of `6 + 6 * n` |
 | clients | one connection is one program of the library, with its own handles; calls of several threads are carried out one after the other |
