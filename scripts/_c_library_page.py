@@ -109,7 +109,8 @@ refused.
 
 No booting of a served board: `BootFile` answers 202, as of a board that cannot be reached at its addresses. No kernel drivers, and
 no memory windows of an HSSB. Functions that no manual of these systems has, those of later FOCAS libraries among them, are not
-exported: the loader names them, and `--missing` lists them beforehand.
+exported: the loader names them, and `--missing` lists them beforehand. Nor are `cnc_rdpmacro` and `cnc_rdpmacror`, which the manual
+names in a list and declares nowhere.
 """
 
 

@@ -63,6 +63,17 @@ C_PROGRAMS = {
         "mode 1, run 0, motion 0, emergency 0, alarm 0\n#500 = 3.0\n#501 = 1.0\n#502 = 0.0\n"
         "too short 2\nfree 0\nfree again -8\n"
     ),
+    # What the samples of the manual print and read: the directory of 6.6, ` 00001.500` and `-00001.500`, 250 as a word.
+    "fanuc_manual": CProgram(
+        "open 0\ncontrol PM H of 6 axes,  3 of them controlled\nNO ALARM\npreset 0, read 0: 120005\nedit 0\n"
+        "download 0, 0\nupload 0 10[%|O0012(TE] 10[ST)|G1F0.3] 10[W10.|M30|%] end 0\n"
+        "directory 0: O12O1234%\ndirectory 0: %|O12(TEST)|O1234()|%\ndirectory 0: O12(TEST)27O1234()47%\n"
+        "search 0, delete 0, again 5, without a start 1, start 0, twice -1, nothing came 5\n"
+        "offsets 0, read 0: 1000 to 1686, one 0: 1014\nM codes 0, the last 0: 69\nlimit 0, read 0: 400000\n"
+        "axes 0: X Y Z\nmacro 0, read 0 [ 00001.500]\n"
+        "macros 0, read 0 [ 00001.500] [-00001.500] [ 00000.025]\n"
+        "D100 0, read 0: 250, bytes 0: 250 0\nR200 0, read 0: all bytes together 0\nfree 0\n"
+    ),
     "fanuc_gantry": CProgram("open 0\nhome 0 0\nat 5000 20000\nwaited for a buffer 1\nfree 0\n"),
     "apci_jog": CProgram("init 0, board 4, 3 axes\nat 12.500\n", file="apci_system.dat"),
     # the arc of the gantry is half a circle around (60, 25) from (60, 0)

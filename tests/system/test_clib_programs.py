@@ -7,6 +7,7 @@ import os
 import re
 import shutil
 import subprocess
+import sys
 from collections.abc import Callable
 from contextlib import suppress
 from functools import cache
@@ -155,7 +156,19 @@ def _shown(title: str) -> str:
 
 def test_the_tutorial_shows_the_program_and_what_it_prints() -> None:
     assert _shown("program") == (EXAMPLES / "c" / "fanuc_macro.c").read_text("utf-8")
-    assert _shown("output") == facade_says()
+    assert _shown("output") == (EXAMPLES / "c" / "fanuc_macro.txt").read_text("utf-8") == facade_says()
+
+
+def test_the_script_for_windows_tries_the_same_program() -> None:
+    script = EXAMPLES / "c" / "try_on_windows.ps1"
+    assert "examples/c/try_on_windows.ps1 win32" in (EXAMPLES.parent / "README.md").read_text("utf-8")
+    text = script.read_text("utf-8")
+    assert {f"{REFERENCE}.c", f"{REFERENCE}.txt"} <= set(re.findall(rf"{REFERENCE}\.\w+", text))
+    for target, compiler in WINDOWS.items():
+        assert f'{target} = "{compiler}"' in text
+        if sys.platform == "win32" and shutil.which(compiler):
+            ran = ["powershell", "-ExecutionPolicy", "Bypass", "-File", str(script), target]
+            assert subprocess.run(ran, timeout=300, check=False).returncode == 0
 
 
 @pytest.fixture(scope="module")
