@@ -19,7 +19,6 @@ from polycnc.jit._cache import ContentCache
 from polycnc.jit._calls import call
 from polycnc.jit._marks import Mark, call_in_python
 from polycnc.jit._pipeline import pipelines
-from polycnc.jit._plain import ALLOWANCE
 from polycnc.jit._reach import codes
 from polycnc.jit._reference import by_reference
 
@@ -41,7 +40,7 @@ class _Entry(CPUDispatcher):
         """Return what is called with these arguments, of types that are not loaded: plain Python for little work."""
         numbas: Any = super()
         values = tuple(_values_of(args))
-        if not ALLOWANCE.take(lambda: self._mark.wanted(values)):
+        if not self._mark.is_little(values):
             return numbas._compile_for_args(*args, **kws)
         if self._cache.is_kept(tuple(map(self._type_of, args)), self.targetctx):
             return numbas._compile_for_args(*args, **kws)

@@ -151,6 +151,10 @@ class Entry(Kept):
             make_entry(self)
         return self.dispatcher
 
+    def is_little(self, values: tuple[Any, ...]) -> bool:
+        """Take the steps of a call from the allowance, if there are as many left."""
+        return ALLOWANCE.take(lambda: self.wanted(values))
+
     def wanted(self, values: tuple[Any, ...]) -> int:
         """Return how many steps a call may take."""
         return 1 if self.steps is None else self.steps(*values)

@@ -207,7 +207,7 @@ class Facade(Generic[S]):
         self.functions[name] = function
         self._calls[name] = call
         self._packed_calls[name] = carrier(
-            [(place, each.take) for place, each in arguments if not isinstance(each.type, Number | Real)]
+            [(place, each.take) for place, each in arguments if type(each.type) not in (Number, Real)]
         )
         return public
 
