@@ -36,8 +36,8 @@ export class Link extends EventTarget {
   // What is commanded of a channel is of the one that is shown, where there are several.
   async command(name, values = {}) {
     if (this.status?.channels?.length > 1 && OF_CHANNEL.includes(name)) values = { ...values, channel: this.channel };
-    const status = await this.json("commands", { method: "POST", body: JSON.stringify({ command: name, ...values }) });
-    if (status) this.show(status);
+    const of = this.name, status = await this.json("commands", { method: "POST", body: JSON.stringify({ command: name, ...values }) });
+    if (status && this.name === of) this.show(status); // another machine may have been chosen meanwhile
     return Boolean(status);
   }
   show(status) { this.status = status; this.tell("status", status); }

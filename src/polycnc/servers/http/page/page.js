@@ -84,8 +84,8 @@ function drawPath(name) {
   clearTimeout(drawPath.timer);
   if (!name || !link.has("path")) { path.show(null); return; }
   drawPath.timer = setTimeout(async () => {
-    const answer = await fetch(link.url(`path?program=${encodeURIComponent(name)}`)).catch(() => null);
-    if (parts.program.selected !== name || !answer) return;
+    const of = link.name, answer = await fetch(link.url(`path?program=${encodeURIComponent(name)}`)).catch(() => null);
+    if (link.name !== of || parts.program.selected !== name || !answer) return;
     const told = await answer.json();
     path.show(answer.ok ? told : null, answer.ok ? told.errors[0] ?? "" : told.detail);
   }, REDRAW_MS);
@@ -150,8 +150,10 @@ async function choose(machine, channel = 0) {
   document.body.classList.toggle("board", !link.has("control"));
   path.clear();
   charts.clear();
-  link.status = await link.json("status");
-  if (!link.status) { setTimeout(() => { if (!parts || link.name === machine.name) choose(machine, channel); }, AGAIN_MS); return; }
+  const status = await link.json("status"), isLooked = () => shown === machine && link.channel === channel;
+  if (!isLooked()) return; // another one has been chosen meanwhile
+  link.status = status;
+  if (!status) { setTimeout(() => { if (isLooked()) choose(machine, channel); }, AGAIN_MS); return; }
   build();
   if (tab) parts.tabs.open(tab);
   link.show(link.status);

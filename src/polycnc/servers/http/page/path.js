@@ -114,6 +114,7 @@ export class Path {
 
   // The machine is here, and executes this line (0: none) of the program that is shown.
   at(axes, line, running) {
+    if (this.axes?.some((name) => name && !(name in axes))) this.clear(); // they are those of another channel
     if (!this.axes) this.choose(axes);
     const here = this.place((name) => axes[name].machine), last = this.places.at(-1);
     if (!last || Math.hypot(...here.map((value, k) => value - last[k])) > LEAST_MM) {
