@@ -167,14 +167,12 @@ class ControlTime:
 
     def note_running(self) -> None:
         """Let the program memory know which programs are executed."""
-        known, self._known = (
-            self._known,
-            [
-                (channel.run_state, channel.returning, channel.executed, channel.run and channel.run.program)
-                for channel in self._of.channels
-            ],
-        )
-        if known != self._known:
+        found: list[tuple[object, ...]] = [
+            (channel.run_state, channel.returning, channel.executed, channel.run and channel.run.program)
+            for channel in self._of.channels
+        ]
+        if found != self._known:
+            self._known = found
             self._of.programs.running = frozenset().union(
                 *(channel.programs for channel in self._of.channels)
             )

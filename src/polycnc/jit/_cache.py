@@ -32,7 +32,12 @@ _rebuild: Any = compiler.CompileResult._rebuild
 _dumps: Any = serialize.dumps
 _runtime: Any = nrt.rtsys
 ANY_PROCESSOR = ("generic", "")  # name and features by which numba makes code for every processor of a kind
-_MAKERS = ("_calls", "_compile", "_pipeline", "_reference")  # modules here
+_MAKERS = (
+    "_calls.py",
+    "_compile.py",
+    "_pipeline.py",
+    "_reference.py",
+)  # what a compiled function depends on here
 _SETTINGS = ("OPT", "DEBUGINFO_DEFAULT", "BOUNDSCHECK", "LOOP_VECTORIZE", "SLP_VECTORIZE", "LLVM_PASS_OPT")
 
 
@@ -40,10 +45,7 @@ _SETTINGS = ("OPT", "DEBUGINFO_DEFAULT", "BOUNDSCHECK", "LOOP_VECTORIZE", "SLP_V
 def _compiler() -> str:
     """Return what compiles: this package, interpreter, numba, what it stands on, and its settings."""
     here = resources.files(__package__)
-    sources = [
-        here.joinpath(name).read_bytes()
-        for name in ("_calls.py", "_compile.py", "_pipeline.py", "_reference.py")
-    ]
+    sources = [here.joinpath(name).read_bytes() for name in _MAKERS]
     own = hashlib.blake2b(b"".join(each.replace(b"\r\n", b"\n") for each in sources)).hexdigest()
     versions = (
         sys.implementation.cache_tag,

@@ -86,9 +86,8 @@ class StatusReport:
         if mask & 2:
             parts.append(f"Bf:{max(0, PLANNER_BLOCKS - queued)},{free}")
         idle = state.split(":")[0] in _IDLE_STATES
-        feed = (
-            0.0 if idle else status.channel.feed.actual
-        )  # not that of the very cycle in which a motion ended
+        # A machine that stands has no feed, not even in the very cycle in which a motion ended.
+        feed = 0.0 if idle else status.channel.feed.actual
         parts.append(f"FS:{self._units.rate(feed)},{abs(status.spindle.actual_rpm):.0f}")
         if pins:
             parts.append("Pn:" + pins)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import asyncio
 from collections.abc import Sequence
 
 from polycnc.servers.asgi import AsgiDoor, Refused
@@ -34,9 +33,6 @@ class HttpDoor(AsgiDoor):
             UsageError: The address or port cannot be listened on.
         """
         await super().start()
-        self._warming = asyncio.ensure_future(self._warm())
-
-    async def _warm(self) -> None:
         await self._guard.warm()
         for machine in {each.kind: each for each in self._machines}.values():
             status_json(machine)

@@ -92,9 +92,8 @@ class Keeper:
         turns: Turns | None = None,
     ) -> None:
         self._turns = turns or Turns(wall, math.inf)
-        self._asked_s = (
-            -math.inf
-        )  # when nothing was left to be done before a request, and nothing has come since
+        # When nothing was left to be done before a request, if nothing has come since.
+        self._asked_s = -math.inf
         self.pace = Pace(wall, rate, changed=self._soon)
         self._wall = wall
         self._share_s = share_s

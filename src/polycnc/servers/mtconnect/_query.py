@@ -19,10 +19,8 @@ _KNOWN = {
     "asset": {"type", "count", "removed"},
     "assets": {"type", "count", "removed"},
 }
-_ALWAYS = {
-    "pretty",
-    "_",
-}  # agents have the one, documents are indented anyway; pages pass their caches by the other
+# Agents have "pretty", and documents are indented anyway; pages pass their caches by "_".
+_ALWAYS = {"pretty", "_"}
 MOST_INTERVAL_MS = 2**31 - 1
 
 
