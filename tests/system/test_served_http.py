@@ -16,7 +16,7 @@ from typing import Any
 import pytest
 from hypothesis import Phase, given, settings
 
-from support import operator_page
+from support import operator_page, page_answers
 from support.browser import browser, new_page
 from support.command import polycnc, python
 from support.focas_line import Line
@@ -260,6 +260,8 @@ def test_the_page_operates_the_machine(size: tuple[int, int], served: Served, ch
         page.wait_for_timeout(20)
     page.keyboard.up("ArrowRight")
     if size[0] > 1000:
+        page_answers.turn_faster_than_answers(page, served)
+        page_answers.choose_before_the_answer(page)
         operator_page.operate(page, served)
     for width, height in {size, (820, 1180)} if size[0] > 1000 else {size}:
         page.set_viewport_size({"width": width, "height": height})

@@ -1,7 +1,9 @@
-// Which of several channels is shown, and which blocks block delete skips.
-import { isPressed, kept, make, put, toggle } from "/dom.js";
+// Which of several channels is shown, which switches are on, and which blocks block delete skips.
+import { Held } from "/held.js";
+import { $, isPressed, kept, make, put, toggle } from "/dom.js";
 import { TEXTS } from "/texts.js";
 
+const SWITCHES = ["single_block", "dry_run", "optional_stop", "machine_lock"];
 const MARKS = [1, 2, 3, 4, 5, 6, 7, 8, 9];
 
 // The choice of a channel: it is there where a machine has several, and says what each of them does.
@@ -17,11 +19,26 @@ export function channelChoice(link, chosen) {
   return { select, show };
 }
 
+// The switches of a channel; each shows what it was turned to until the machine has answered.
+export class Switches {
+  constructor(link) {
+    this.held = Object.fromEntries(SWITCHES.map((name) => [name, new Held()]));
+    this.elements = SWITCHES.map((name) => toggle(name, TEXTS[name], (on) => this.held[name].send(() => link.command("set_switches", { [name]: on }))));
+  }
+  show(switches) {
+    for (const name of SWITCHES) if (!this.held[name].holds) $(name).setAttribute("aria-pressed", switches[name]);
+  }
+}
+
 // Block delete: on or off, and the marks (/1 to /9, a slash alone is /1) that it skips while it is on.
 export class Marks {
   constructor(link) {
     this.chosen = new Set(kept.get("marks", [1]));
-    const turn = () => link.command("set_switches", { block_delete: isPressed(this.key) ? [...this.chosen] : [] });
+    this.held = new Held();
+    const turn = () => {
+      const marks = isPressed(this.key) ? [...this.chosen] : [];
+      this.held.send(() => link.command("set_switches", { block_delete: marks }));
+    };
     this.key = toggle("block_delete", TEXTS.block_delete, turn);
     this.head = make("summary", { "aria-label": TEXTS.marks, title: TEXTS.marks });
     this.each = MARKS.map((mark) => toggle(`mark_${mark}`, `/${mark}`, (on) => {
@@ -35,6 +52,7 @@ export class Marks {
   }
   // These are skipped now.
   show(marks) {
+    if (this.held.holds) return;
     this.key.setAttribute("aria-pressed", marks.length > 0);
     if (marks.length && marks.join() !== [...this.chosen].join()) { this.chosen = new Set(marks); this.tell(); }
   }

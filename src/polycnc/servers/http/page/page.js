@@ -3,7 +3,7 @@ import { $, button, isPressed, kept, make, put, toggle } from "/dom.js";
 import { TEXTS } from "/texts.js";
 import { Charts } from "/charts.js";
 import { Link } from "/link.js";
-import { channelChoice, Marks } from "/choices.js";
+import { channelChoice, Marks, Switches } from "/choices.js";
 import { Manual } from "/manual.js";
 import { Mdi } from "/mdi.js";
 import { Path } from "/path.js";
@@ -14,7 +14,6 @@ import { follow, shortcutList } from "/shortcuts.js";
 import { THEMES, theme, wear } from "/theme.js";
 import "/axes.js";
 
-const SWITCHES = ["single_block", "dry_run", "optional_stop", "machine_lock"];
 const RATES = [0, 0.1, 0.5, 1, 2, 5, 10, 50], REDRAW_MS = 300, AGAIN_MS = 1000, MOST_JUMP = 60_000;
 
 const link = new Link(), channels = channelChoice(link, (number) => choose(shown, number)), path = new Path($("path"), $("views")), charts = new Charts($("charts")), axes = document.querySelector("cnc-axes"), runPage = $("page-run");
@@ -73,7 +72,7 @@ function notices(id, all) {
 
 function showKeys(channel, pressed) {
   for (const key of document.querySelectorAll("[data-mode]")) key.setAttribute("aria-pressed", key.dataset.mode === channel.mode);
-  for (const name of SWITCHES) $(name).setAttribute("aria-pressed", channel.switches[name]);
+  parts.switches.show(channel.switches);
   parts.marks.show(channel.switches.block_delete);
   $("stop").setAttribute("aria-pressed", pressed);
   put($("stop"), pressed ? TEXTS.release : TEXTS.stop);
@@ -100,19 +99,19 @@ addEventListener("pagehide", () => parts?.manual.releaseAll());
 document.addEventListener("visibilitychange", () => { if (document.hidden) parts?.manual.releaseAll(); });
 
 function buildKeys() {
-  const marks = new Marks(link), key = (name) => button(name, TEXTS[name], () => link.command(name));
+  const marks = new Marks(link), switches = new Switches(link), key = (name) => button(name, TEXTS[name], () => link.command(name));
   const group = (name, ...inside) => make("div", { role: "group", "aria-label": TEXTS[name], class: "row" }, ...inside);
   $("keys").replaceChildren(
     group("key_group", ...["cycle_start", "feed_hold", "reset"].map(key)),
     group("mode_group", ...Object.entries(TEXTS.modes).map(([mode, text]) => make("button", { "data-mode": mode, "aria-pressed": "false", onclick: () => link.command("select_mode", { mode }) }, text))),
-    group("switch_group", ...SWITCHES.map((name) => toggle(name, TEXTS[name], (on) => link.command("set_switches", { [name]: on }))), ...marks.elements));
-  return marks;
+    group("switch_group", ...switches.elements, ...marks.elements));
+  return { marks, switches };
 }
 
 function build() {
-  const names = Object.keys(ownAxes(link.status)), marks = buildKeys();
+  const names = Object.keys(ownAxes(link.status)), keys = buildKeys();
   new Mdi(link, $("mdi_line"));
-  parts = { marks, words: new Words(link), manual: new Manual(link, $("hand"), names), program: new Program(link, () => drawPath(parts.program.selected)), tabs: new Tabs(link, $("store"), runPage) };
+  parts = { ...keys, words: new Words(link), manual: new Manual(link, $("hand"), names), program: new Program(link, () => drawPath(parts.program.selected)), tabs: new Tabs(link, $("store"), runPage) };
 }
 
 // ---------------------------------------------------------------- what is there from the beginning

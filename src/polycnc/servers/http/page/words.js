@@ -1,16 +1,18 @@
 // Feed, speed and tool, the modal words, the overrides.
 import { $, make, put } from "/dom.js";
+import { Held } from "/held.js";
 import { TEXTS } from "/texts.js";
 
 const OVERRIDES = { feed: { max: 200, step: 5 }, rapid: { max: 100, step: 25 }, spindle: { max: 200, step: 5 } };
 
 export class Words {
   constructor(link) {
+    this.held = Object.fromEntries(Object.keys(OVERRIDES).map((name) => [name, new Held()]));
     const figures = (head, from) => [make("b", {}, head), ...[0, 1, 2].map((k) => make("b", { id: `figure${from + k}` }, "0"))];
     $("fst").replaceChildren(make("b", { id: "tool" }), ...["programmed", "commanded", "actual"].map((key) => make("i", {}, TEXTS[key])), ...figures("F", 0), ...figures("S", 3));
     $("overrides").replaceChildren(...Object.entries(OVERRIDES).map(([name, range]) => make("label", {}, TEXTS[name],
       make("input", { type: "range", id: `override-${name}`, min: 0, value: 100, ...range,
-        onchange: (event) => link.command("set_overrides", { [name]: Number(event.target.value) / 100 }),
+        onchange: ({ target: { value } }) => this.held[name].send(() => link.command("set_overrides", { [name]: Number(value) / 100 })),
         oninput: (event) => put($(`override-${name}-is`), `${event.target.value} %`) }),
       make("output", { id: `override-${name}-is` }))));
   }
@@ -24,7 +26,7 @@ export class Words {
     put($("modal"), words.filter((word) => typeof word === "string").join(" "));
     for (const name of Object.keys(OVERRIDES)) {
       const slider = $(`override-${name}`), value = Math.round(overrides[name] * 100);
-      if (document.activeElement === slider && slider.matches(":active")) continue; // it is being drawn
+      if (this.held[name].holds || slider.matches(":active")) continue; // it has just been turned, or is being drawn
       slider.value = value;
       put($(`override-${name}-is`), `${value} %`);
     }
