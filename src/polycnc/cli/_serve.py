@@ -74,9 +74,9 @@ def serve_command(
             part=part,
         )
     )
-    import asyncio
+    from polycnc.servers.process import run
 
-    asyncio.run(serve_plan(plan, is_part=part is not None) if plan.processes == 1 else serve_fleet(plan))
+    run(serve_plan(plan, is_part=part is not None) if plan.processes == 1 else serve_fleet(plan))
 
 
 def _leave(status: int) -> NoReturn:

@@ -189,5 +189,4 @@ class ControlTime:
         turning = next(
             (channel for channel in self._of.channels if channel.data.spindle), self._of.channels[0]
         )
-        block = turning.executed
-        return 0 if block is None else block.modal.tool
+        return 0 if turning.run is None else turning.run.reading.tool

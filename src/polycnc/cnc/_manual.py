@@ -9,9 +9,6 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-import numpy as np
-import numpy.typing as npt
-
 from polycnc.cnc._alarms import AlarmList
 from polycnc.cnc._manual_checks import check_direction, check_free, check_size, check_way
 from polycnc.cnc._manual_data import REST, AxisMotion, Handwheel, ManualData, ManualKind, ManualState
@@ -249,8 +246,8 @@ class ManualMotion:
 
     def after(self) -> None:
         """Look at what the last cycle has brought: ends of profiles, switches, pulses; and go on from there."""
-        edges: npt.NDArray[np.uint8] = self._machine.state.switches.rising[:, (LIMIT_LOW, LIMIT_HIGH)]
-        if edges.any():
+        rising = self._machine.state.switches.rising
+        if any(rising.tobytes()) and (edges := rising[:, (LIMIT_LOW, LIMIT_HIGH)]).any():
             self.check_limit_switches()
             owners = [self._alarms.owner(axis.name) for axis in self._profiles.axes]
             stopped = {owner for owner, edge in zip(owners, edges, strict=True) if edge.any()}

@@ -69,6 +69,11 @@ class RunReading:
         return self._feed.channel.records.block(self.tag)
 
     @property
+    def tool(self) -> int:
+        """The tool in the spindle with the executed block, 0 where that is not known."""
+        return self._feed.channel.records.tool(self.tag)
+
+    @property
     def stack(self) -> tuple[Call, ...]:
         """The calls that led to the executed block, the outermost first."""
         record = self.block

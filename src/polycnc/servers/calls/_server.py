@@ -6,6 +6,7 @@ import asyncio
 from collections.abc import Sequence
 from functools import partial
 from pathlib import Path
+from typing import cast
 
 from polycnc.controllers.library.clib import PORT
 from polycnc.errors import UsageError
@@ -154,8 +155,9 @@ class _Line(asyncio.BufferedProtocol):
         return Treatment(any(each.drop for each in found), max(each.delay_s for each in found))
 
     def connection_made(self, transport: asyncio.BaseTransport) -> None:
-        assert isinstance(transport, asyncio.Transport)
-        self.transport = transport
+        self.transport = transport = cast(
+            asyncio.Transport, transport
+        )  # not every event loop derives its own
         notice_loss(transport)
         self._linger = Linger(transport, self._buffer)
         if not self._server.lines.join(self):
@@ -219,7 +221,7 @@ class _Line(asyncio.BufferedProtocol):
 
     def _send_now(self, sent: bytes) -> None:
         if sent:
-            self.transport.write(sent)
+            self._linger.send(sent)
         if self._machines and self._limit is not None:
             self._limit.cancel()
             self._limit = None

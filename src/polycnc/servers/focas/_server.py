@@ -9,7 +9,7 @@ import asyncio
 import contextlib
 import socket
 import struct
-from typing import Any
+from typing import Any, cast
 
 from polycnc.controllers.fanuc import PowerMate
 from polycnc.errors import UsageError
@@ -173,8 +173,9 @@ class _Line(asyncio.Protocol):
         self._new = True
 
     def connection_made(self, transport: asyncio.BaseTransport) -> None:
-        assert isinstance(transport, asyncio.Transport)
-        self.transport = transport
+        self.transport = transport = cast(
+            asyncio.Transport, transport
+        )  # not every event loop derives its own
         notice_loss(transport)
         if self._server.lines.join(self):
             self._patience.begin(LEAST_PATIENCE_S)

@@ -109,6 +109,8 @@ class Keeper:
 
     def start(self) -> None:
         """Let time pass from now on, without being asked; what has passed outside until now is not caught up with."""
+        if self.failed.done():
+            return
         self.pace.forget()
         beat_s = self._beat_s()
         self._call_at(self._turns.first_s(asyncio.get_running_loop().time(), beat_s))

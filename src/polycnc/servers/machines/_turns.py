@@ -10,7 +10,7 @@ from polycnc.machine import Wall
 
 _SHARE_S = 0.005  # for the beats together, and as much for the requests together
 _HARDLY = 1e-3  # of a tick
-_TICK_S = 0.05  # between two times at which beats are due: many machines wake the process no oftener than one
+_TICK_S = 0.02  # between two times at which beats are due: many machines wake the process no oftener than one
 
 
 class Turns:

@@ -2,6 +2,7 @@
 
 from polycnc.servers.process._doors import DOORS, FOCAS_PROFILE, focas_kind, plant_kinds
 from polycnc.servers.process._kinds import KINDS
+from polycnc.servers.process._loop import run
 from polycnc.servers.process._made import Machinery
 from polycnc.servers.process._rehearsal import rehearse
 from polycnc.servers.process._serving import MachineWanted, Serving
@@ -16,4 +17,5 @@ __all__ = [
     "focas_kind",
     "plant_kinds",
     "rehearse",
+    "run",
 ]

@@ -28,6 +28,8 @@ from polycnc.servers.process._kinds import KINDS
 from polycnc.servers.process._made import Machinery, Made
 
 _SHARE_S = 0.01  # of the wall clock that all machines together may take before a door answers
+_LEAST_SHARE_S = 0.002  # of one machine: more than what it does at once costs
+_APART_S, _MOST_APART_S = 0.1, 5.0  # the beginnings of two machines, and of the first and the last
 _CLOSE_S = 0.6  # that doors have to end their connections
 _MOST_PROGRAM_BYTES = 64 << 20
 Load = Callable[[str, bytes], None]
@@ -77,7 +79,7 @@ class Serving:
         take_all_files()
         turns = Turns(self.wall)
         for each in wanted:
-            self._make(each, _SHARE_S / len(wanted), turns)
+            self._make(each, max(_SHARE_S / len(wanted), _LEAST_SHARE_S), turns)
         asked = [(kind, at, [self._of(each)]) for each in wanted for kind, at in each.doors]
         asked += [
             (kind, at, list(filter(kind.serves, self.machines)) or self.machines) for kind, at in shared
@@ -101,13 +103,18 @@ class Serving:
         return [(*door, machines) for door, machines in zip(self.doors, self.served_by, strict=True)]
 
     async def begin(self) -> None:
-        """Start the programs and let time begin; what has to be compiled is compiled here."""
+        """Start the programs and let time begin; what has to be compiled is compiled here.
+
+        Machines begin one after the other: what happens in all of them after the same time does not happen at once.
+        """
         await self.start_programs()
         for machine in self.machines:
             await asyncio.sleep(0)  # whoever wants it to end does not wait for the others
             machine.served.advance(1)
-        for machine in self.machines:
-            machine.keeper.start()
+        loop = asyncio.get_running_loop()
+        apart_s = min(_APART_S, _MOST_APART_S / max(1, len(self.machines)))
+        for number, machine in enumerate(self.machines):
+            loop.call_later(number * apart_s, machine.keeper.start)
 
     async def start_programs(self) -> None:
         """Start the programs, without letting time pass."""
