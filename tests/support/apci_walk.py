@@ -1,4 +1,4 @@
-"""A board that is asked for anything in any order, the same for a seed: by the PC, and by programs of random statements.
+"""A board that is asked for anything in any order, the same for a seed: by the PC, and by random programs.
 
 Unlike the mixture, which it draws its moves from, it writes every register with any number, names axes that are not
 there or twice, stops and continues tasks, gives every command of programs, and notes what functions return.
