@@ -97,6 +97,13 @@ def waits(b: Bench) -> None:
     b.step(20, 20)
     b.sstps(0)  # it runs empty while it is halted: no reset
     b.step(240, 60)
+    b.wrModeReg(0)
+    for lengths in ((0.01,), (0.01, 2.0), (0.01, 2.0, 0.01), (0.01, 0.01)):  # two in a row are too short
+        b.cl(1)
+        for length in lengths:
+            b.smlr({1: length}, (900.0, 30.0, 30.0))
+        b.ssms(1)
+        b.step(80, 40)
     b.ends = b.ends[3::8]
 
 
@@ -188,7 +195,7 @@ def stops(b: Bench) -> None:
     b.ms(0, 3)
     b.js(3)
     b.ssms(0)
-    b.step(40, 20)
+    b.step(80, 40)
     b.smlr({0: 0.5}, (300.0, 20.0, 15.0))
     b.ssms(0)
     b.step(12, 12)
@@ -297,8 +304,13 @@ def scales(b: Bench) -> None:
     b.mlr({0: 1.0}, (300.0, -20.0, 0.0))
     b.smlr({0: 1e-10}, (300.0, 20.0, 0.0))
     b.step(4, 4)
-    b.ra(0, 1)
-    b.cl(0, 1)
+    b.ra(0, 1, 3)
+    b.cl(0, 1, 3)
+    b.ctru(pcap.TRU(pu=6, tu=0))
+    b.mlr({0: 100.0, 3: -250.0}, (300000.0, 20000.0, 0.0))
+    b.step(20, 20)
+    b.ctru(pcap.TRU(pu=0, tu=0))
+    b.cl(0, 3)
     for phi in (0.0, -0.0):
         b.mha({0: 0.0, 1: 0.0}, (3000.0, 60.0, 0.0), phi, 0.5, 0.0)  # a whole turn either way
         b.step(40, 20)
@@ -340,4 +352,57 @@ def scales(b: Bench) -> None:
     b.step(4, 4)
 
 
-CONDITIONS = {"waits": (TWO, waits), "stops": (STOPS, stops), "scales": (SCALES, scales)}
+def changes(b: Bench) -> None:
+    """Overrides that change, at once or in their time, while ramps are bent or a path comes back to its target."""
+    b.cl(0, 1)
+    b.wrJerkRel(0, 0.625)
+    for mode in (0x10000, 0x30000, 0):
+        b.wrModeReg(mode)
+        b.mlr({0: 2.0, 1: 0.5}, (300.0, 20.0, 0.0))
+        b.step(16, 8)
+        b.wrtrovrst(0.05)
+        b.wrtrovr(0.5)
+        b.utrovr(0, 1)
+        b.step(40, 8)
+        b.wrtrovrst(0.0)
+        b.wrtrovr(1.25)
+        b.utrovr(0)
+        b.step(24, 8)
+        b.js(0, 1)
+        b.cl(0, 1)
+        b.jr({0: 1.5})
+        b.step(24, 8)
+        b.wrjovr(0, 0.625)
+        b.step(24, 8)
+        b.js(0)
+        b.step(8, 8)
+        b.utrovr(0, 1)
+        b.cl(0, 1)
+    for tvl in (-12.0, 12.0):
+        b.mlr({0: 1.0}, (300.0, 20.0, tvl))
+        for override in (0.75, 1.125, 0.5, 1.0, 0.625, 1.25):
+            b.step(18, 9)
+            b.wrtrovr(override)
+            b.utrovr(0)
+        b.step(40, 20)
+        b.cl(0)
+    b.jhl(0)
+    b.step(16, 8)
+    b.wrjovr(0, 0.5)
+    b.step(16, 8)
+    b.board.set_input(1, True)
+    b.step(2, 2)
+    b.wrjovr(0, 1.5)  # it has found the switch and brakes
+    b.step(24, 8)
+
+
+REFERENCE = (
+    "[[axis]]\nhac = 200.0\nhvl = 30.0\njerkrel = 0.5\n[[axis]]\n"
+    "[inputs]\n1 = { functions = ['REF'], axes = ['A1'] }\n"
+)
+CONDITIONS = {
+    "changes": (REFERENCE, changes),
+    "waits": (TWO, waits),
+    "stops": (STOPS, stops),
+    "scales": (SCALES, scales),
+}
