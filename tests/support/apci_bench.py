@@ -145,7 +145,7 @@ class Bench:
         self.tracks: dict[str, list[float]] = {}
         self.ends: list[int] = []
         self.told: list[float] = []
-        self._read_by_program: list[str] = []
+        self.read_by_program: list[str] = []
         if program:
             self._run_reader()
 
@@ -203,7 +203,7 @@ class Bench:
         """Let task 3 read what programs can read, again and again."""
         names = [f"A{n + 1}.{name}" for n in range(len(self.board.axes)) for name in _QUALIFIERS] + _SYSTEM
         lines = "; ".join(f"CD[{_FIRST + k}] := {name}" for k, name in enumerate(names))
-        self._read_by_program = names
+        self.read_by_program = names
         self.program(f"BEGIN WHILE TRUE DO BEGIN {lines} END END.", 3)
 
     def step(self, scans: int, every: int = 5) -> None:
@@ -260,7 +260,7 @@ class Bench:
             elements = ("errnum", "errline", "running", "csrcline", "stackfree")
             for element in elements if task < 3 else ("running",):
                 note(f"task {task} {element}", float(getattr(status, element)))
-        for k, name in enumerate(self._read_by_program):
+        for k, name in enumerate(self.read_by_program):
             note(f"SAP {name}", float(state.cd[_FIRST + k]))
 
     def text(self) -> list[str]:

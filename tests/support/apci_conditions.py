@@ -396,11 +396,88 @@ def changes(b: Bench) -> None:
     b.step(24, 8)
 
 
+READ_TWICE = """
+board_type = "APCI-8008"
+[[axis]]
+time_unit = "min"
+jac = 2.0e6
+jvl = 2000.0
+backlash = 0.125
+mpe = 0.5
+ipw = 0.01
+[axis.plant]
+kind = "lag"
+lag_s = 0.004
+index = 0.0625
+[[axis]]
+motor = "stepper"
+unit = "deg"
+effradius = 9.0
+slsp = 900.0
+[inputs]
+1 = { functions = ["EO"], axes = ["A1"] }
+3 = { functions = ["LP"], axes = ["A1"], inverted = true }
+[rulings]
+instructions_per_scan = 2000
+"""
+
+
+def readers(b: Bench) -> None:
+    """What programs read is the same in the compiled scan and out of it, where one does not fit into it."""
+    names = b.read_by_program
+    lines = "; ".join(f"CD[{600 + k}] := {name}" for k, name in enumerate(names))
+    b.program(f"VAR t: ARRAY[1..9999] OF DOUBLE; BEGIN WHILE TRUE DO BEGIN {lines} END END.", 2)
+    b.cl(0, 1)
+    b.board.axes[1].alarms = 0xF00000
+    cd = b.board.state.cd
+
+    def compare(scans: int) -> None:
+        for _ in range(scans):
+            b.board.advance(1)
+            b.tell(sum(cd[300 + k] != cd[600 + k] for k in range(len(names))))
+        b.step(1, 1)
+
+    b.wrtrovr(0.75)
+    b.wrtrovrst(0.01)
+    b.smlai({0: 0.75, 1: -4.0}, (900.0, 30.0, 0.0), index=5)
+    b.spda(1, 3, b.points(1.0, 2.0, 3.0), 9)
+    b.ssms(0, 1)
+    b.utrovr(0, 1)
+    b.board.set_input(1, True)
+    b.board.set_input(9, True)
+    b.wrdigo(0, 0x5A)
+    b.wrmcp(1, 77)
+    compare(4)
+    b.wraux(0, -1.5)
+    b.szpa(1, 3.0)
+    b.wrlpndx(0, 2.5)
+    b.wrdpoffset(0, 0.125)
+    b.wrgfaux(1, 2.5)
+    b.wrGCR(0, -7)
+    b.wrControllerFlags(1, 0x12345)
+    b.wrnfrax(-2)
+    b.wrModeReg(-5)
+    b.ctru(pcap.TRU(pu=4, tu=2))
+    b.wrledyl(1)
+    compare(6)
+    b.js(0, 1)
+    b.board.variables.interface.report(0x80000)
+    b.board.variables.irqpc = 1
+    compare(3)
+    b.rifs(0)
+    b.jr({0: -2.0})
+    compare(5)
+    b.ol(0, 1)
+    b.wrmcp(1, -900)
+    compare(3)
+
+
 REFERENCE = (
     "[[axis]]\nhac = 200.0\nhvl = 30.0\njerkrel = 0.5\n[[axis]]\n"
     "[inputs]\n1 = { functions = ['REF'], axes = ['A1'] }\n"
 )
 CONDITIONS = {
+    "readers": (READ_TWICE, readers),
     "changes": (REFERENCE, changes),
     "waits": (TWO, waits),
     "stops": (STOPS, stops),

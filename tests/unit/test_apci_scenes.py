@@ -830,7 +830,7 @@ def walk(seed: int, b: Bench) -> None:
 for seed in (1, 2, 3, 4):
     SCENES[f"walk{seed}"] = (MIXED if seed % 2 else OTHER_UNITS, partial(walk, seed))
 
-WITH_PROGRAM = ("values", "jogs", "steppers", "queues", "overrides", "walk2", "walk3")
+WITH_PROGRAM = ("values", "jogs", "steppers", "queues", "overrides", "walk2", "walk3", "readers")
 
 # What the scenes show of the manual: these parts of the inventory, without what needs no board at work.
 PARTS = re.compile(
