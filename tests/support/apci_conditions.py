@@ -346,9 +346,9 @@ def scales(b: Bench) -> None:
     b.mlr({0: math.nan}, (300.0, 20.0, 0.0))
     b.smlr({0: 1.0}, (math.inf, 20.0, 0.0))
     b.step(4, 4)
-    for call in (pcap.wrci, pcap.rdci):
-        call(-1, pcap.CIBUF(ci=[7] * 1000))
-        call(1000, pcap.CIBUF(ci=[7] * 1000))
+    for exchange in (pcap.wrci, pcap.rdci):
+        exchange(-1, pcap.CIBUF(ci=[7] * 1000))
+        exchange(1000, pcap.CIBUF(ci=[7] * 1000))
     b.step(4, 4)
 
 
