@@ -73,6 +73,8 @@ _OF_RECORD = (
     ),
     *("digi", "digo", "ifs", "kp", "ki", "kd", "kpl", "kfca", "kfcv"),
 )
+_IN_RECORD = {f"rd{name}": name for name in _OF_RECORD} | {"rdjtvl": "jtv"}
+_IN_RECORD |= {f"rdf.{name}": name for name in ("kp", "ki", "kd", "kpl", "kfca", "kfcv")}
 _FIRST = 300  # common double in which the program keeps what it reads
 _QUALIFIERS = [each.name for each in AXIS_QUALIFIERS.values() if not each.indexed and each.name != "lp"]
 _SYSTEM = [each.name for each in SYSTEM_VARIABLES.values() if not each.indexed]
@@ -207,10 +209,10 @@ class Bench:
         self.program(f"BEGIN WHILE TRUE DO BEGIN {lines} END END.", 3)
 
     def step(self, scans: int, every: int = 5) -> None:
-        """Let scans pass and note all registers in every few of them."""
-        for _ in range(scans // every):
+        """Let scans pass and note all registers in every few of them; between, those of rdap come from there."""
+        for left in range(scans // every - 1, -1, -1):
             self.board.advance(every)
-            self._note()
+            self._note(one_by_one=left == 0)
         self.ends.append(len(self.tracks["rdErrorReg"]))
         for an in range(len(self.board.axes)):
             self._compare(an, len(self.ends) % 4)
@@ -235,14 +237,18 @@ class Bench:
             for number in range(8 * quarter + 1, 8 * quarter + 9):
                 assert (name, number, bit(an, number)) == (name, number, word >> number - 1 & 1)
 
-    def _note(self) -> None:
+    def _note(self, *, one_by_one: bool) -> None:
         def note(name: str, value: float) -> None:
             self.tracks.setdefault(name, []).append(value)
 
         for an in range(len(self.board.axes)):
+            record = pcap.TSRP(an=an)
+            if not one_by_one:
+                pcap.rdap(record)
             for owner, name, read in _READERS:
                 if owner == "axis":
-                    note(f"{name} {an}", read(an))
+                    known = not one_by_one and name in _IN_RECORD
+                    note(f"{name} {an}", float(getattr(record, _IN_RECORD[name])) if known else read(an))
         for owner, name, read in _READERS:
             if owner == "board":
                 note(name, read(0))
