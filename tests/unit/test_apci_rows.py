@@ -775,6 +775,47 @@ def test_latched_positions_count_from_the_zero_offset_in_force() -> None:
     assert pc.code == 0
 
 
+@pytest.mark.covers("apci.ctrl.scantime", "apci.ssf.1003", "apci.rdSampleTime", "apci.wrtrovrst")
+@pytest.mark.covers("apci.spd", "apci.rddv")
+@pytest.mark.parametrize("scan_us", [800, 2000])
+def test_what_takes_a_time_takes_as_many_scans_as_it_has(scan_us: int) -> None:
+    pc = Pc(f"sample_time_us = {scan_us}\n[[axis]]\n")
+    axes, scans_in_s = pc.close(0), 1_000_000 // scan_us
+    assert pcap.rdSampleTime() == (1, scan_us)
+
+    def scans_until(changed: Callable[[], bool]) -> int:
+        done = 0
+        while not changed():
+            done += pc.board.advance(1)
+        return done
+
+    def waited(value: float) -> int:
+        pcap.wrci(7, pcap.CIBUF())
+        pcap.ssf(0, 1003, value)
+        pcap.ssf(0, 7, 1.0)
+        pcap.ssms(axes)
+        return scans_until(lambda: bool(pc.board.state.ci[7]))
+
+    assert waited(9375.0) - waited(3125.0) == scans_in_s * 2 // 5  # 64 us each
+    pcap.wrtrovrst(0.8)
+    pcap.wrtrovr(0.5)
+    pcap.utrovr(axes)
+
+    def override() -> float:
+        pcap.rdjovr(record := pcap.TSRP(an=0))
+        return float(record.jovr)
+
+    assert scans_until(lambda: override() == 0.5) == near(scans_in_s * 2 // 5, abs=1)
+    pcap.spd(0, 3, pcap.SPDBUF(position=[0.5, 1.25, 1.25, *[0.0] * 997]))
+    pcap.ssms(axes)
+    seen = []
+    for _ in range(3):
+        pc.board.advance(1)
+        seen.append((pc.rp(0), pc.dv(0)))
+    assert seen == [(0.5, near(0.5 * scans_in_s)), (1.25, near(0.75 * scans_in_s)), (1.25, 0.0)]
+    pcap.detach()
+
+
 # ---------------------------------------------------------------------- messages
 
 _TRANSFER = {
