@@ -20,6 +20,31 @@ from polycnc.controllers.apci.board._system_file import parse_system_file
 from polycnc.controllers.apci.sap._board_host import BoardTasks
 from polycnc.controllers.apci.sap._commands import AXIS_QUALIFIERS, SYSTEM_VARIABLES
 
+_ELSEWHERE = {
+    *("wrdigob", "wrcd", "wrci", "wrcbcnct", "wrSysVarInt", "wrSysVarDbl", "wrAxVarInt", "wrAxVarDbl"),
+    *("wrtp", "wrlp", "wrlpndx"),
+}  # fmt: skip
+WRITES = sorted(
+    name
+    for name in pcap.FUNCTIONS
+    if name.startswith("wr") and f"rd{name[2:]}" in pcap.FUNCTIONS and name not in _ELSEWHERE
+)
+"""What writes a register that is read back by a function of the same name."""
+OF_AXES = {name for name in WRITES if re.search(r"tsrp| an,", str(pcap.FUNCTIONS[name].prototype))}
+WHOLE = {
+    *(
+        "wrModeReg",
+        "wrnfrax",
+        "wrGCR",
+        "wrControllerFlags",
+        "wrmcp",
+        "wrdigo",
+        "wrledgn",
+        "wrledyl",
+        "wrledrd",
+    )
+}
+
 _ELEMENTS = {"jtvl": "jtv", "rpd": "rp", "dpd": "dp", "tpd": "tp", "lpndx": "lp"}
 _NOT_READ = {
     "rdigi",
@@ -48,6 +73,8 @@ _OF_RECORD = (
     ),
     *("digi", "digo", "ifs", "kp", "ki", "kd", "kpl", "kfca", "kfcv"),
 )
+_IN_RECORD = {f"rd{name}": name for name in _OF_RECORD} | {"rdjtvl": "jtv"}
+_IN_RECORD |= {f"rdf.{name}": name for name in ("kp", "ki", "kd", "kpl", "kfca", "kfcv")}
 _FIRST = 300  # common double in which the program keeps what it reads
 _QUALIFIERS = [each.name for each in AXIS_QUALIFIERS.values() if not each.indexed and each.name != "lp"]
 _SYSTEM = [each.name for each in SYSTEM_VARIABLES.values() if not each.indexed]
@@ -119,7 +146,8 @@ class Bench:
         pcap.MCUG3_SetBoardIntRoutine(self.interrupts.append)
         self.tracks: dict[str, list[float]] = {}
         self.ends: list[int] = []
-        self._read_by_program: list[str] = []
+        self.told: list[float] = []
+        self.read_by_program: list[str] = []
         if program:
             self._run_reader()
 
@@ -177,20 +205,24 @@ class Bench:
         """Let task 3 read what programs can read, again and again."""
         names = [f"A{n + 1}.{name}" for n in range(len(self.board.axes)) for name in _QUALIFIERS] + _SYSTEM
         lines = "; ".join(f"CD[{_FIRST + k}] := {name}" for k, name in enumerate(names))
-        self._read_by_program = names
+        self.read_by_program = names
         self.program(f"BEGIN WHILE TRUE DO BEGIN {lines} END END.", 3)
 
     def step(self, scans: int, every: int = 5) -> None:
-        """Let scans pass and note all registers in every few of them."""
-        for _ in range(scans // every):
+        """Let scans pass and note all registers in every few of them; between, those of rdap come from there."""
+        for left in range(scans // every - 1, -1, -1):
             self.board.advance(every)
-            self._note()
+            self._note(one_by_one=left == 0)
         self.ends.append(len(self.tracks["rdErrorReg"]))
         for an in range(len(self.board.axes)):
-            self._compare(an)
+            self._compare(an, len(self.ends) % 4)
 
-    def _compare(self, an: int) -> None:
-        """Look whether rdap and the functions for single bits tell the same as those for one register."""
+    def tell(self, *values: float) -> None:
+        """Note what functions have returned."""
+        self.told += values
+
+    def _compare(self, an: int, quarter: int) -> None:
+        """Look whether rdap and the functions for a quarter of the bits tell the same as those for one register."""
         pcap.rdap(record := pcap.TSRP(an=an))
         last = {
             name.split()[0][2:]: values[-1] for name, values in self.tracks.items() if name.endswith(f" {an}")
@@ -201,16 +233,22 @@ class Bench:
         assert record.jtv == last["jtvl"]
         for name in ("axst", "digi", "digo", "ifs"):
             bit = getattr(pcap, f"rd{name}b")
-            assert sum(bit(an, number) << number - 1 for number in range(1, 33)) == last[name]
+            word = int(last[name])
+            for number in range(8 * quarter + 1, 8 * quarter + 9):
+                assert (name, number, bit(an, number)) == (name, number, word >> number - 1 & 1)
 
-    def _note(self) -> None:
+    def _note(self, *, one_by_one: bool) -> None:
         def note(name: str, value: float) -> None:
             self.tracks.setdefault(name, []).append(value)
 
         for an in range(len(self.board.axes)):
+            record = pcap.TSRP(an=an)
+            if not one_by_one:
+                pcap.rdap(record)
             for owner, name, read in _READERS:
                 if owner == "axis":
-                    note(f"{name} {an}", read(an))
+                    known = not one_by_one and name in _IN_RECORD
+                    note(f"{name} {an}", float(getattr(record, _IN_RECORD[name])) if known else read(an))
         for owner, name, read in _READERS:
             if owner == "board":
                 note(name, read(0))
@@ -225,9 +263,10 @@ class Bench:
         note("interrupts", float(sum(self.interrupts)))
         for task, status in enumerate(tasks):
             pcap.rdcncts(task, status)
-            for element in ("errnum", "errline", "running", "csrcline") if task < 3 else ("running",):
+            elements = ("errnum", "errline", "running", "csrcline", "stackfree")
+            for element in elements if task < 3 else ("running",):
                 note(f"task {task} {element}", float(getattr(status, element)))
-        for k, name in enumerate(self._read_by_program):
+        for k, name in enumerate(self.read_by_program):
             note(f"SAP {name}", float(state.cd[_FIRST + k]))
 
     def text(self) -> list[str]:
@@ -243,6 +282,8 @@ class Bench:
             lines.append(
                 f"{name}: {marks} / {changes} / {total:.12g}" if changes else f"{name}: {values[0]:.12g}"
             )
+        if self.told:
+            lines.append(f"told: {' '.join(f'{each:.12g}' for each in self.told)}")
         return [*lines, f"0: {', '.join(idle)}"]
 
 

@@ -96,6 +96,27 @@ def test_sma_lets_go_when_its_software_limit_is_moved_away() -> None:
     assert rig.board.axes[0].dp == 30.0
 
 
+@pytest.mark.covers("apci.cl", "apci.limit.SMA")
+def test_cl_of_an_axis_that_has_run_beyond_its_hold_keeps_it_where_it_is() -> None:
+    rig = Rig(
+        'number_of_axes = 2\n[[axis]]\nsoft_right = "SMA"\nslr = 20\nkp = 60\n'
+        '[axis.plant]\nkind = "lag"\nlag_s = 0.02\n'
+    )
+    shp(rig.board, 0, 0.0)
+    rig.set_jog(jac=500.0, jdec=500.0)
+    axis = rig.board.axes[0]
+    jr(rig.board, (0,), (100.0,))
+    while axis.rp <= axis.dp or not rig.bits() & Axst.lsrs:  # it swings over
+        rig.board.advance(1)
+    while axis.rv > 0.0:
+        rig.board.advance(1)
+    beyond = axis.rp
+    assert beyond > axis.dp + 0.05
+    cl(rig.board, (0,))
+    rig.board.advance(5)
+    assert axis.dp == beyond
+
+
 @pytest.mark.covers("apci.limit.TOM", "apci.axst.5.lsls", "apci.axst.6.lsrs")
 @pytest.mark.parametrize(("sign", "limit", "bit"), SIDES)
 def test_tom_takes_the_drive_away_and_it_coasts(sign: float, limit: float, bit: int) -> None:

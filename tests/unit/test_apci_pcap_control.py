@@ -386,6 +386,8 @@ def test_alarms_of_an_encoder_are_seen_on_an_apci_8008_only(board: str, number: 
     assert [pcap.rddigib(1, bit) for bit in range(17, 33)] == [
         shown and bit == number for bit in range(17, 33)
     ]
+    pcap.rdigi(pcap.TSRP(an=1))  # resets bits 17 to 20 alone
+    assert pcap.rddigib(1, number) == shown
     pcap.detach()
 
 

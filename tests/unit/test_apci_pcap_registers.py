@@ -141,6 +141,7 @@ def test_a_register_by_axis_number_is_returned_and_written(
     assert (read(0), read(2)) == before
 
 
+@pytest.mark.covers("apci.pcap.general.return_values")
 @pytest.mark.parametrize(
     ("stem", "planned", "written"),
     [
@@ -160,6 +161,7 @@ def test_a_register_with_a_status_returns_0_and_its_value(
     assert read(0) == (0, planned)
 
 
+@pytest.mark.covers("apci.pcap.general.return_values")
 @pytest.mark.parametrize(
     ("stem", "planned", "written"),
     [
@@ -176,6 +178,9 @@ def test_a_variable_of_the_board_with_a_status(pc: Pc, stem: str, planned: float
     for value in (written, 0.0, written / 3.0):
         assert write(value) == 0
         assert read() == (0, value)
+    kept = -0.75 if stem == "trtvl" else value  # of these only a velocity at the end can be negative
+    assert write(-0.75) == (kept != -0.75)
+    assert read() == (0, kept)
 
 
 @pytest.mark.covers(

@@ -775,16 +775,93 @@ def test_latched_positions_count_from_the_zero_offset_in_force() -> None:
     assert pc.code == 0
 
 
+@pytest.mark.covers("apci.ctrl.scantime", "apci.ssf.1003", "apci.rdSampleTime", "apci.wrtrovrst")
+@pytest.mark.covers("apci.spd", "apci.rddv")
+@pytest.mark.parametrize("scan_us", [800, 2000])
+def test_what_takes_a_time_takes_as_many_scans_as_it_has(scan_us: int) -> None:
+    pc = Pc(f"sample_time_us = {scan_us}\n[[axis]]\n")
+    axes, scans_in_s = pc.close(0), 1_000_000 // scan_us
+    assert pcap.rdSampleTime() == (1, scan_us)
+
+    def scans_until(changed: Callable[[], bool]) -> int:
+        done = 0
+        while not changed():
+            done += pc.board.advance(1)
+        return done
+
+    def waited(value: float) -> int:
+        pcap.wrci(7, pcap.CIBUF())
+        pcap.ssf(0, 1003, value)
+        pcap.ssf(0, 7, 1.0)
+        pcap.ssms(axes)
+        return scans_until(lambda: bool(pc.board.state.ci[7]))
+
+    assert waited(9375.0) - waited(3125.0) == scans_in_s * 2 // 5  # 64 us each
+    pcap.wrtrovrst(0.8)
+    pcap.wrtrovr(0.5)
+    pcap.utrovr(axes)
+
+    def override() -> float:
+        pcap.rdjovr(record := pcap.TSRP(an=0))
+        return float(record.jovr)
+
+    assert scans_until(lambda: override() == 0.5) == near(scans_in_s * 2 // 5, abs=1)
+    pcap.spd(0, 3, pcap.SPDBUF(position=[0.5, 1.25, 1.25, *[0.0] * 997]))
+    pcap.ssms(axes)
+    seen = []
+    for _ in range(3):
+        pc.board.advance(1)
+        seen.append((pc.rp(0), pc.dv(0)))
+    assert seen == [(0.5, near(0.5 * scans_in_s)), (1.25, near(0.75 * scans_in_s)), (1.25, 0.0)]
+    pcap.detach()
+
+
 # ---------------------------------------------------------------------- messages
 
-CODES = {  # of each function, all that the manual lists
-    "BootErrorReport": (0, *range(10, 17), 200, 201, 202),
-    "InitMcuErrorReport": (0, *range(20, 26), *range(31, 40)),
-    "txbfErrorReport": (0, *range(20, 26)),
+_TRANSFER = {
+    0: "transferred",
+    20: "opened",
+    21: "larger than the memory of a cnc task",
+    22: "neither a system file nor a cnc file",
+    23: "no memory",
+    24: "no such task, or the system file is damaged",
+    25: "transfer to the remote system",
+}
+CODES = {  # of each function, all that the manual lists, and what the text says of it
+    "BootErrorReport": {
+        0: "booted",
+        10: "file name",
+        11: "cannot be opened",
+        12: "no elf file",
+        13: "elf file is damaged, or its transfer",
+        14: "start address",
+        15: "for another board",
+        16: "did not receive what was sent",
+        200: "flash memory cannot be reached",
+        201: "flash memory has the wrong size",
+        202: "at its addresses",
+    },
+    "InitMcuErrorReport": {
+        **_TRANSFER,
+        0: "initialised",
+        31: "no board",
+        32: "operating system is not loaded, or has stopped",
+        33: "do not belong together",
+        34: "driver cannot be opened",
+        35: "memory cannot be mapped (",
+        36: "memory cannot be mapped in (",
+        37: "memory cannot be mapped out (",
+        38: "board cannot be reached",
+        39: "mailbox",
+    },
+    "txbfErrorReport": _TRANSFER,
 }
 
 
 @pytest.mark.covers(*(f"apci.{name}" for name in CODES), "apci.MsgToScreen")
+@pytest.mark.covers(*(f"apci.BootFile.ret.{code}" for code in CODES["BootErrorReport"]))
+@pytest.mark.covers(*(f"apci.InitMcuSystem.ret.{code}" for code in (0, *range(31, 40))))
+@pytest.mark.covers(*(f"apci.txbf2.ret.{code}" for code in _TRANSFER))
 def test_a_report_knows_the_codes_of_its_function_and_no_others() -> None:
     shown: list[str] = []
     pcap.attach(show=shown.append)
@@ -798,8 +875,9 @@ def test_a_report_knows_the_codes_of_its_function_and_no_others() -> None:
             texts[code] = shown.pop()
             assert texts[code].endswith(f"({code})")
             assert ("some.file" in texts[code]) == (name != "InitMcuErrorReport")
-        assert [code for code, text in texts.items() if "unknown" not in text] == list(codes)
-        assert len({texts[code] for code in codes}) == len(codes)
+        assert [code for code, text in texts.items() if "unknown" not in text] == sorted(codes)
+        for code, words in codes.items():
+            assert words in texts[code].lower()
     assert not shown
     pcap.detach()
 

@@ -16,37 +16,11 @@ import pytest
 from polycnc.conformance import State, load_conformance
 from polycnc.controllers.apci import ErrorReg, pcap
 from polycnc.controllers.apci.sap._commands import AXIS_QUALIFIERS, SYSTEM_VARIABLES
-from support.apci_bench import Bench, difference
+from support.apci_bench import OF_AXES, WHOLE, WRITES, Bench, difference
+from support.apci_conditions import CONDITIONS
 from support.apci_mixture import MIXED, Mixture
 from support.apci_pc import near
-
-WRITES = {name for name in pcap.FUNCTIONS if name.startswith("wr") and f"rd{name[2:]}" in pcap.FUNCTIONS} - {
-    *(
-        "wrdigob",
-        "wrcd",
-        "wrci",
-        "wrcbcnct",
-        "wrSysVarInt",
-        "wrSysVarDbl",
-        "wrAxVarInt",
-        "wrAxVarDbl",
-        "wrtp",
-        "wrlp",
-    ),
-    "wrlpndx",
-}
-OF_AXES = {name for name in WRITES if re.search(r"tsrp| an,", str(pcap.FUNCTIONS[name].prototype))}
-WHOLE = (
-    "wrModeReg",
-    "wrnfrax",
-    "wrGCR",
-    "wrControllerFlags",
-    "wrmcp",
-    "wrdigo",
-    "wrledgn",
-    "wrledyl",
-    "wrledrd",
-)
+from support.apci_walk import OTHER_UNITS, Walk
 
 RECORDED = Path(__file__).parents[1] / "golden" / "apci"
 SCENES: dict[str, tuple[str, Callable[[Bench], None]]] = {}
@@ -542,7 +516,7 @@ def queues(b: Bench) -> None:
 @scene("[[axis]]\ntime_unit = 'min'\n[[axis]]\nunit = 'deg'\n[[axis]]\nmotor = 'stepper'\n")
 def values(b: Bench) -> None:
     """A number of its own in every register that the PC can write, then in each that a program can."""
-    for k, name in enumerate(sorted(each for each in pcap.FUNCTIONS if each in WRITES)):
+    for k, name in enumerate(WRITES):
         for an in range(3) if name in OF_AXES else ("",):
             number = 3 * k + 2 + (an if isinstance(an, int) else 0)
             value = number if name in WHOLE else number / 8
@@ -844,7 +818,19 @@ def mix(seed: int, b: Bench) -> None:
 for seed in (1, 2, 3, 4):
     SCENES[f"mixed{seed}"] = (MIXED, partial(mix, seed))
 
-WITH_PROGRAM = ("values", "jogs", "steppers", "queues", "overrides")
+
+SCENES |= CONDITIONS
+
+
+def walk(seed: int, b: Bench) -> None:
+    """Ask for anything, from the PC and from programs."""
+    Walk(b, seed).run(180)
+
+
+for seed in (1, 2, 3, 4):
+    SCENES[f"walk{seed}"] = (MIXED if seed % 2 else OTHER_UNITS, partial(walk, seed))
+
+WITH_PROGRAM = ("values", "jogs", "steppers", "queues", "overrides", "walk2", "walk3", "readers")
 
 # What the scenes show of the manual: these parts of the inventory, without what needs no board at work.
 PARTS = re.compile(
