@@ -36,6 +36,7 @@ def handle(card: ToldCard) -> Iterator[lib.IMC_HANDLE]:
     "imc.fifo.SEL_PFIFO1",
     "imc.fifo.SEL_PFIFO2",
     "imc.fifo.SEL_CFIFO",
+    *(f"imc.concept.{name}" for name in ("instruction_fifos", "ififo", "qfifo", "pfifo1", "pfifo2", "cfifo")),
 )
 @pytest.mark.parametrize(
     ("calls", "accepted"), [(SENDERS, {I, Q, P1, P2}), (WAITERS, {Q, P1, P2}), (PATHS, {P1, P2})]
@@ -253,6 +254,19 @@ def test_the_largest_that_is_taken(card: ToldCard, handle: lib.IMC_HANDLE) -> No
     assert lib.IMC_GearFree(handle, 32767.999999999767, 3, 4, 0, I) == lib.IMC_OK
     assert lib.IMC_SetParam16(handle, 12, 0xFFFF, 3, I) == lib.IMC_OK
     assert lib.IMC_SetParamBit(handle, 562, 15, 1, 3, I) == lib.IMC_OK
+
+
+@pytest.mark.covers("imc.IMC_SetParam16", "imc.IMC_SetParam32", "imc.IMC_SetParam48", "imc.IMC_WaitParamMask")
+@pytest.mark.covers("imc.type.IMC16", "imc.type.IMC32", "imc.type.__int64", "imc.status.IMC_OUT_OF_RANGE")
+def test_a_number_may_have_a_sign_or_not_within_its_width(card: ToldCard, handle: lib.IMC_HANDLE) -> None:
+    for name, at, bits in (("SetParam16", 307, 16), ("SetParam32", 317, 32), ("SetParam48", 337, 48)):
+        least, most = -(1 << bits - 1), (1 << bits) - 1
+        for value, status in ((least, 0), (most, 0), (1 << bits - 1, 0), (least - 1, 13), (most + 1, 13)):
+            assert getattr(lib, f"IMC_{name}")(handle, at, value, 0, Q) == status, (name, value)
+    assert lib.IMC_WaitParamMask(handle, 307, 0xFFFF, -0x8000, 0xFFFFFFFF, 0, Q) == lib.IMC_OK
+    for given in ((0x10000, 1, 1), (1, -0x8001, 1), (1, 1, 1 << 32)):
+        assert lib.IMC_WaitParamMask(handle, 307, *given, 0, Q) == lib.IMC_OUT_OF_RANGE
+    assert len(card.told) == 10
 
 
 @pytest.mark.covers("imc.param.groupnum", "imc.IMC_AddContourData", "imc.concept.cfifo")

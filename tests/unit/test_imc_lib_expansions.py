@@ -173,7 +173,8 @@ def test_source_types_are_addresses_of_velocities_and_positions(
     assert [each["synsrc"] for each in found] == [225, 78, 10, 33, 86]
 
 
-@pytest.mark.covers("imc.IMC_HandWheel")
+@pytest.mark.covers("imc.IMC_HandWheel", "imc.IMC_GearFree", "imc.IMC_GearInDist", "imc.IMC_GearInTime")
+@pytest.mark.covers("imc.param.gearratio", "imc.type.S16.32")
 @pytest.mark.parametrize(
     ("raw", "words"),
     [(0.5, (0x0000, 0x8000, 0x0000)), (-1.5, (0x0000, 0x8000, 0xFFFE)), (2**-32, (1, 0, 0))]
@@ -185,10 +186,14 @@ def test_ratios_become_48_bits(
     card: ToldCard, handle: lib.IMC_HANDLE, raw: float, words: tuple[int, ...]
 ) -> None:
     lib.IMC_HandWheel(handle, raw, 0, 2, lib.SEL_IFIFO)
-    ((_, instruction),) = card.told
-    assert isinstance(instruction, WriteMany)
-    value = named(instruction)["gearratio"]
-    assert tuple(value >> 16 * k & 0xFFFF for k in range(3)) == words
+    lib.IMC_GearFree(handle, raw, 0, 0, 2, lib.SEL_QFIFO)
+    lib.IMC_GearInDist(handle, raw, 0, 0, 1, 0, 70, 2, lib.SEL_IFIFO)
+    lib.IMC_GearInTime(handle, raw, 0, 0, 70, 2, lib.SEL_IFIFO)
+    sent = [instruction for _, instruction in card.told if isinstance(instruction, WriteMany)]
+    assert len(sent) == 4
+    for each in sent:
+        value = named(each)["gearratio"]
+        assert tuple(value >> 16 * k & 0xFFFF for k in range(3)) == words
 
 
 @pytest.mark.covers(

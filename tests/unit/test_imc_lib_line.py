@@ -87,7 +87,13 @@ def test_handles_of_one_card_have_their_own_time_out_and_are_closed_one_by_one()
 
 
 @pytest.mark.covers(
-    "imc.IMC_FindNetCard", "imc.struct.NIC_INFO", "imc.const.limits", "imc.IMC_Open", "imc.IMC_OpenX"
+    "imc.IMC_FindNetCard",
+    "imc.struct.NIC_INFO",
+    "imc.const.limits",
+    "imc.IMC_Open",
+    "imc.IMC_OpenX",
+    "imc.const.openMode",
+    "imc.option.openMode",
 )
 def test_sixteen_adapters_with_long_names_are_listed_and_a_card_is_opened_on_the_last() -> None:
     names = [f"{k:02}" + "x" * 250 + f"{k:03}" for k in range(16)]
