@@ -114,6 +114,9 @@ def test_sixteen_adapters_with_long_names_are_listed_and_a_card_is_opened_on_the
     status, handle = lib.IMC_Open(15, 63)
     assert handle is not None
     assert (status, handle.axis_count) == (lib.IMC_OK, 7)
+    for adapter, number in ((-1, 63), (16, 63), (15, -1), (15, 64)):
+        assert lib.IMC_OpenX(adapter, number, 40, 1) == (lib.IMC_OUT_OF_RANGE, None)
+        assert lib.IMC_OpenUsePassword(adapter, number, "1234") == (lib.IMC_OUT_OF_RANGE, None)
     for timeout, mode in ((0, 1), (-1, 1), (-40, 0), (40, -1), (40, 2)):
         assert lib.IMC_OpenX(15, 63, timeout, mode) == (lib.IMC_OUT_OF_RANGE, None)
 

@@ -1,0 +1,86 @@
+"""What a flag or an effect depends on, one condition at a time: each alone makes the difference, worked out by hand."""
+
+from __future__ import annotations
+
+import pytest
+
+from support.imc_card import FLAG, IFIFO, ready_card, send, set_now, shows
+
+QUICK = [(f"{system}{name}", 1000.0, 1) for system in ("mcs", "pcs") for name in ("accel", "decel")]
+
+
+@shows("smoothing smooth moving profiling curvel pcstgvel mcstgvel")
+def test_smoothing_lasts_while_increments_that_cancel_are_not_all_given() -> None:
+    card = ready_card()
+    set_now(card, *QUICK, ("smooth", 6, 1), ("mcstgvel", 1, 1))
+    card.advance(1)
+    set_now(card, ("pcstgvel", -2, 1))
+    card.advance(1)  # 1 and then 1 - 2
+    set_now(card, ("pcstgvel", 0, 1), ("mcstgvel", 0, 1))
+    card.advance(2)
+    names = ("profiling", "mcsmoving", "pcsmoving", "curvel", "smoothing", "moving")
+    assert [card.read(name, 1) for name in names] == [0, 0, 0, 0, FLAG, FLAG]
+    card.advance(2)  # 1 leaves the mean, -1 is in it
+    assert (card.read("smoothing", 1), card.read("moving", 1)) == (FLAG, FLAG)
+    card.advance(3)
+    assert [card.read(name, 1) for name in (*names, "curpos")] == [0] * 7
+
+
+@shows("smoothing smooth")
+def test_smoothing_is_shown_whichever_of_its_sums_is_0() -> None:
+    card = ready_card()
+    set_now(card, *QUICK, ("smooth", 3, 1), ("mcstgvel", 2, 1))
+    card.advance(1)
+    set_now(card, ("pcstgvel", -3, 1))
+    for _ in range(2):  # 2, -1: nothing is left to give; 2, -1, -1: the mean is 0
+        card.advance(1)
+        assert (card.read("smoothing", 1), card.read("moving", 1)) == (FLAG, FLAG)
+
+
+@shows("moving curvel vellim run profiling mcsmoving")
+def test_moving_is_set_in_the_cycle_of_a_velocity_after_which_nothing_is_planned() -> None:
+    card = ready_card()
+    set_now(card, ("mcsaccel", 3, 1), ("vellim", 5, 1), ("mcstgvel", 40, 1))
+    card.advance(2)  # 3, then 6
+    names = ("run", "profiling", "mcsmoving", "curvel", "moving", "motion")
+    assert [card.read(name, 1) for name in names] == [0, 0, 0, 6, FLAG, FLAG]
+    card.advance(1)
+    assert [card.read(name, 1) for name in names] == [0] * 6
+
+
+@shows("mcsmoving profiling moving motion engear mcsvel")
+@pytest.mark.covers("imc.IMC_GearFree", "imc.concept.gear_law")
+def test_a_slave_is_planned_until_it_has_the_speed_of_its_gear_and_at_rest_with_its_master() -> None:
+    card = ready_card()
+    set_now(card, ("mcstgvel", 8, 2), ("mcsaccel", 8, 2), ("mcsdecel", 8, 2), ("mcsaccel", 1, 1))
+    set_now(card, ("gearratio", 0.5, 1), ("master", 2, 1), ("gearsrc", 4, 1), ("engear", FLAG, 1))
+    names = ("mcsvel", "mcsmoving", "profiling", "moving", "engear")
+    card.advance(3)
+    assert [card.read(name, 1) for name in names] == [3, FLAG, FLAG, FLAG, FLAG]
+    card.advance(2)
+    set_now(card, ("mcstgvel", 0, 2))
+    card.advance(1)
+    assert [card.read(name, 1) for name in names] == [0, 0, 0, 0, FLAG]
+    assert card.read("motion", 1) == 0
+
+
+@shows("emstop startgroup run ena error pfifoenable")
+def test_an_emergency_stop_switches_off_what_has_nothing_to_do_and_does_not_switch_it_on_again() -> None:
+    card = ready_card()
+    on = [("startgroup", FLAG), ("startpath1", FLAG), ("startpath2", FLAG)]
+    set_now(card, *on, ("emstop", 0x2F))  # every bit but that of the stop
+    card.advance(2)
+    assert [card.read(name) for name, _ in on] == [FLAG] * 3
+    assert [card.read(name, 3) for name in ("run", "ena", "error")] == [FLAG, FLAG, 0x2F]
+    set_now(card, ("emstop", 0x10))
+    card.advance(1)
+    assert [card.read(name) for name, _ in on] == [0] * 3
+    assert [[card.read(name, axis) for name in ("run", "ena")] for axis in range(4)] == [[0, 0]] * 4
+    assert [int(card.read("error", axis)) & 0xFFFF for axis in range(4)] == [0x3F] * 4
+    send(card, IFIFO, ("emstop", 0), *on)
+    card.advance(3)
+    assert [card.read(name, 1) for name in ("run", "ena", "error")] == [0, 0, 0x3F]
+    assert [card.read(name) for name, _ in on] == [FLAG] * 3
+    set_now(card, ("emstop", 0x10))
+    card.advance(1)
+    assert [card.read(name) for name, _ in on] == [0] * 3
