@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import pytest
 
+from polycnc.controllers.imc.core._parameters import PARAMETERS
 from support.imc_card import FLAG, IFIFO, ready_card, send, set_now, shows
 
 QUICK = [(f"{system}{name}", 1000.0, 1) for system in ("mcs", "pcs") for name in ("accel", "decel")]
@@ -84,3 +85,66 @@ def test_an_emergency_stop_switches_off_what_has_nothing_to_do_and_does_not_swit
     set_now(card, ("emstop", 0x10))
     card.advance(1)
     assert [card.read(name) for name, _ in on] == [0] * 3
+
+
+# What nothing in the card reads or writes: of each axis, and of the card.
+KEPT_BY_AXIS = (
+    "fixvel",
+    "encsctr",
+    "aiod",
+    "stepmod",
+    "dirtime",
+    "steptime",
+    "psoftlim",
+    "vellim",
+    "homepos",
+    "gearratio",
+)
+KEPT_BY_CARD = (
+    "waitfilt",
+    "waitequ",
+    "eventid",
+    "eventbase",
+    "out1",
+    "out2",
+    "gio",
+    "giod",
+    "groupnum",
+    "group_k",
+)
+CELLS = [f"user{width}b{k}" for width, count in ((16, 10), (32, 10), (48, 5)) for k in range(count)]
+
+
+@shows(" ".join((*KEPT_BY_AXIS, *KEPT_BY_CARD, *CELLS)))
+def test_what_is_kept_outlives_everything_that_clears_stops_or_refers_the_axes() -> None:
+    card = ready_card()
+    written: dict[tuple[str, int], int] = {}
+    for k, name in enumerate((*KEPT_BY_AXIS, *KEPT_BY_CARD, *CELLS)):
+        each = PARAMETERS[name]
+        for axis in range(4) if each.scope == "A" else (0,):
+            value = (0x1A51 + 97 * k + 7 * axis) << 16 * (each.words - 1) | 1 + axis
+            written[name, axis] = value
+            card.write_raw(each.address, value, axis, each.words)
+    for name in ("sethome", "clear", "gohome", "mcsgo", "engear", "capture"):
+        set_now(card, *((name, FLAG, axis) for axis in range(4)))
+        card.advance(2)
+    set_now(
+        card,
+        ("error", 0x40, 1),
+        ("run", 0, 2),
+        ("clrencs", 0, 3),
+        ("events", 0),
+        ("clearimc", 0),
+        ("emstop", 0x10),
+    )
+    card.advance(3)
+    set_now(
+        card,
+        ("emstop", 0),
+        ("clrqfifo", 0),
+        *((name, 0, axis) for name in ("error", "ena") for axis in range(4)),
+    )
+    card.advance(2)
+    for (name, axis), value in written.items():
+        each = PARAMETERS[name]
+        assert card.read_raw(each.address, axis, each.words) == value, (name, axis)
