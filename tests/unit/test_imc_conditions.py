@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from polycnc.controllers.imc.core._parameters import PARAMETERS
-from support.imc_card import FLAG, IFIFO, ready_card, send, set_now, shows
+from support.imc_card import FLAG, IFIFO, ready_card, send, set_now, shows, trace
 
 QUICK = [(f"{system}{name}", 1000.0, 1) for system in ("mcs", "pcs") for name in ("accel", "decel")]
 
@@ -148,3 +148,63 @@ def test_what_is_kept_outlives_everything_that_clears_stops_or_refers_the_axes()
     for (name, axis), value in written.items():
         each = PARAMETERS[name]
         assert card.read_raw(each.address, axis, each.words) == value, (name, axis)
+
+
+@shows("hpause mcsdecel mcsaccel mcsvel mcsmaxvel mcsgo pcsdecel pcsaccel pcsvel pcsmaxvel pcsgo")
+@pytest.mark.parametrize("system", ["mcs", "pcs"])
+@pytest.mark.parametrize("pause", ["hpause", "haltstep"])
+def test_a_move_pauses_with_its_deceleration_and_goes_on_with_its_acceleration(
+    pause: str, system: str
+) -> None:
+    card = ready_card()
+    rates = {"maxvel": 6, "accel": 2, "decel": 0.5, "dist": -4000, "go": FLAG}
+    set_now(card, *((f"{system}{name}", value, 2) for name, value in rates.items()))
+    card.advance(10)
+    set_now(card, (pause, 0x200, 2))
+    assert trace(card, f"{system}vel", 13, 2) == [-5.5 + 0.5 * k for k in range(12)] + [0]
+    assert [card.read(f"{system}{name}", 2) for name in ("go", "moving")] == [FLAG, FLAG]
+    set_now(card, (pause, 0, 2))
+    assert trace(card, f"{system}vel", 4, 2) == [-1, -3, -5, -6]  # means of the cycles of a ramp of 2
+
+
+@shows("master gearsrc engear mcsvel")
+@pytest.mark.covers("imc.IMC_GearFree", "imc.concept.gear_law")
+def test_an_engaged_slave_follows_another_master_or_another_of_its_parameters_at_once() -> None:
+    card = ready_card()
+    set_now(card, ("mcsaccel", 100, 2), ("mcsaccel", 100, 3), ("mcsaccel", 100, 1), ("mcstgvel", 8, 2))
+    set_now(card, ("mcstgvel", -6, 3), ("pcstgvel", 1, 3), ("pcsaccel", 100, 3))
+    card.advance(2)
+    set_now(card, ("gearratio", 0.5, 1), ("master", 2, 1), ("gearsrc", 4, 1), ("engear", FLAG, 1))
+    card.advance(3)
+    followed = [card.read("mcsvel", 1)]
+    for name, value in (("master", 3), ("gearsrc", 27), ("gearsrc", 227), ("master", 0), ("master", 2)):
+        set_now(card, (name, value, 1))  # mcsvel, pcsvel, curvel
+        card.advance(1)
+        followed.append(card.read("mcsvel", 1))
+    assert followed == [4, -3, 0.5, -2.5, 0, 4]
+
+
+@shows("highvel lowvel homeseq gohome")
+@pytest.mark.covers("imc.concept.homing", "imc.IMC_HomeSwitch2", "imc.IMC_HomeIndex", "imc.const.direction")
+@pytest.mark.parametrize("sign", [1, -1])
+@pytest.mark.parametrize(
+    ("way", "sequence", "speeds"), [(1, 0x34, (7, -3)), (-1, 0x35, (-7, 3)), (-1, 0x09, (-7, 0))]
+)
+def test_speeds_of_a_search_count_without_their_sign(
+    sign: int, way: int, sequence: int, speeds: tuple[int, int]
+) -> None:
+    card = ready_card("[[axis]]\norigin = [-2, 2]\nindex = { first = 200, pitch = 400 }\n")
+    set_now(
+        card,
+        ("mcsaccel", 7),
+        ("mcsdecel", 7),
+        ("highvel", 7 * sign),
+        ("lowvel", -3 * sign),
+        ("mcstgpos", -90 * way),
+    )
+    set_now(card, ("mcsgo", FLAG))
+    card.wait()
+    set_now(card, ("homeseq", sequence), ("gohome", FLAG))
+    seen = trace(card, "mcsvel", 80)
+    assert card.read("gohome") == 0
+    assert (max(seen, key=abs), min(seen) if way > 0 else max(seen)) == speeds

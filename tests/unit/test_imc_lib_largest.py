@@ -8,6 +8,7 @@ import pytest
 
 from polycnc.controllers.imc import imclib as lib
 from polycnc.controllers.imc.core._instructions import InstallEvents, Segment, Write, WriteMany
+from polycnc.controllers.imc.core._parameters import PARAMETERS
 from support.imc_calls import fast, line, many
 from support.imc_card import shows
 from support.imc_network import Program, ToldCard, opened
@@ -72,6 +73,65 @@ def test_all_elements_of_the_largest_call_are_read_written_and_installed() -> No
     assert isinstance(sent, InstallEvents)
     shown = [(each.first_axis, each.constant, each.target_axis) for each in sent.events]
     assert (fifo, shown) == (P2, [(k, -70_001 * k, 31 - k) for k in range(31)])
+
+
+CONSTANTS = {
+    each: 48
+    if "SCA" in each.name
+    else 32
+    if "MUL" in each.name
+    else int("".join(filter(str.isdigit, each.name)))
+    for each in lib.IMC_EVENT_CMD
+    if "i" in each.name or "SET" in each.name
+}
+
+
+@pytest.mark.covers(
+    *(f"imc.event.{each.name}" for each in CONSTANTS), "imc.struct.EventInfo", "imc.IMC_InstallEvent"
+)
+@pytest.mark.covers(*(f"imc.struct.EventInfo.Src2.data{bits}" for bits in (16, 32, 48)))
+@pytest.mark.parametrize("pattern", [0x9A3C_7E1F_8B2D, 0x65C3_81E0_74D2, 0x8000_0000_8000, 0xFFFF_FFFF_FFFE])
+def test_the_constant_of_an_event_has_all_its_bits_and_its_sign(pattern: int) -> None:
+    card = ToldCard(axes=4)
+    handle = opened(card, clock=None)
+    assert len(CONSTANTS) == 17
+    for k, (command, bits) in enumerate(CONSTANTS.items()):
+        half = 1 << bits - 1
+        constant = (pattern + half) % (2 * half) - half
+        given = lib.EventInfo.of(command, src1=(175, k % 4), src2=constant, dest=(337, 0))
+        assert lib.IMC_InstallEvent(handle, [given], 1, Q) == lib.IMC_OK
+        _, sent = card.told[-1]
+        assert isinstance(sent, InstallEvents)
+        assert [(each.command, each.constant) for each in sent.events] == [(command, constant)]
+    live = Program("ready = true\nnumber_of_axes = 2\n")
+    first = 0x5A5A_3C3C_F00F
+    program = {16: "user16b5", 32: "user32b5", 48: "user48b3"}
+    for name, bits in (
+        ("AND", 16),
+        ("OR", 16),
+        ("XOR", 16),
+        ("ADD", 32),
+        ("CMP", 32),
+        ("ADD", 48),
+        ("CMP", 48),
+    ):
+        cell, half = program[bits], 1 << bits - 1
+        constant, value = ((each + half) % (2 * half) - half for each in (pattern, first))
+        live.set(cell, value)
+        command = getattr(lib, f"CMD_{name}{bits}i")
+        event = lib.EventInfo.of(command, src1=(PARAMETERS[cell].address, 0), src2=constant, dest=(337, 0))
+        live.ok(lib.IMC_InstallEvent, [event], 1, I)
+        live.run(1)
+        exact = {
+            "AND": value & constant,
+            "OR": value | constant,
+            "XOR": value ^ constant,
+            "ADD": value + constant,
+        }
+        result = exact.get(name, value - constant)
+        assert live.card.read_raw(337, 0, bits // 16) == (result + half) % (2 * half) - half, name
+        live.set("events", 0)
+        live.run(1)
 
 
 @pytest.mark.covers("imc.IMC_GetCapData", "imc.concept.capfifo", "imc.const.limits")
