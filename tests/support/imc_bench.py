@@ -73,6 +73,13 @@ class Bench:
         for name, value in values.items():
             self.program.set(name, PARAMETERS[name].to_raw(value), axis, fifo)
 
+    def set_any(self, each: Parameter, raw: int, axis: int, fifo: int) -> None:
+        """Write an integer to a parameter in its width; what the library answers but IMC_OK is written down."""
+        half = 1 << 16 * each.words - 1
+        getattr(self, f"SetParam{16 * each.words}")(
+            each.address, (raw + half) % (2 * half) - half, axis, fifo
+        )
+
     def step(self, cycles: int) -> None:
         """Let cycles pass."""
         for _ in range(cycles):

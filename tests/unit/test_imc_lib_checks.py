@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
-from itertools import chain
+from collections.abc import Iterator
 from typing import Any
 
 import pytest
@@ -13,6 +12,7 @@ from polycnc.controllers.imc import imclib as lib
 from polycnc.controllers.imc.core._instructions import Points as Displacements
 from polycnc.controllers.imc.core._instructions import Write, WriteMany
 from polycnc.controllers.imc.core._parameters import PARAMETERS
+from support.imc_calls import PATHS, SENDERS, WAITERS, fast, functions, line, many
 from support.imc_network import ToldCard, opened
 
 I, Q, P1, P2, C = range(5)  # noqa: E741
@@ -29,77 +29,6 @@ def handle(card: ToldCard) -> Iterator[lib.IMC_HANDLE]:
     lib.detach()
 
 
-def line(count: int = 2) -> lib.PFIFOSegData:
-    return lib.PFIFOSegData(datanum=count)
-
-
-def fast(count: int = 2) -> lib.PFIFOSegInfo:
-    return lib.PFIFOSegInfo.of(65536, 0, line(count))
-
-
-def many(*elements: tuple[int, int, int]) -> list[lib.WR_MUL_DES]:
-    return [lib.WR_MUL_DES.of(addr, axis, length) for addr, axis, length in elements]
-
-
-SENDERS: dict[str, tuple[Any, ...]] = {
-    "IMC_SetMulParam": (many((12, 0, 2)), 1),
-    "IMC_SetParam16": (12, 5, 0),
-    "IMC_SetParam32": (12, 5, 0),
-    "IMC_SetParam48": (175, 5, 0),
-    "IMC_SetParamBit": (562, 0, 1, 0),
-    "IMC_ORXORParam": (562, 1, 1, 0),
-    "IMC_TurnParamBit": (562, 0, 0),
-    "IMC_InstallEvent": ([lib.EventInfo.of(lib.CMD_SET16, src2=1, dest=(307, 0))], 1),
-    "IMC_MoveAbsolute": (5, 0),
-    "IMC_MoveRelative": (5, 0),
-    "IMC_MoveSuperimposed": (5, 0),
-    "IMC_Phasing": (5, 0),
-    "IMC_MoveVelocity": (5, 0),
-    "IMC_HomeSwitch1": (0, 1, 0, 0),
-    "IMC_HomeSwitch2": (0, 1, 0, 0),
-    "IMC_HomeSwitch3": (0, 1, 0, 0),
-    "IMC_HomeSwitchIndex1": (0, 1, 0, 0),
-    "IMC_HomeSwitchIndex2": (0, 1, 0, 0),
-    "IMC_HomeSwitchIndex3": (0, 1, 0, 0),
-    "IMC_HomeIndex": (0, 0, 0),
-    "IMC_GearFree": (0.5, 1, 0, 0),
-    "IMC_GearInDist": (0.5, 1, 0, 1, 0, 1000, 0),
-    "IMC_GearInTime": (0.5, 1, 0, 1000, 0),
-    "IMC_HandWheel": (10.0, 1, 0),
-    "IMC_MoveInTime": (1000, 5000, 0),
-    "IMC_MoveInDist": (2000, 1, 500, 0),
-    "IMC_TgvelInTime": (500, 65536, 0),
-    "IMC_TgvelInDist": (2000, 1, 65536, 0),
-}
-WAITERS: dict[str, tuple[Any, ...]] = {
-    "IMC_WaitTime": (100,),
-    "IMC_WaitParamBit": (562, 2, 1, 0, 0),
-    "IMC_WaitParam": (218, 0, 0, 0),
-    "IMC_WaitParamMask": (562, 7, 4, 0, 0),
-}
-PATHS: dict[str, tuple[Any, ...]] = {
-    "IMC_AddLineNWithVel": (fast(),),
-    "IMC_AddLineN": (line(),),
-    "IMC_AddArcLineWithVel": (fast(),),
-    "IMC_AddArcLine": (line(),),
-    "IMC_AddArcWithVel": (65536, 0, 1000, 1000, 0, 1000, 0),
-    "IMC_AddArc": (1000, 1000, 0, 1000, 0),
-    "IMC_AddSpiralWithVel": (65536, 0, 1000, 1000, 500, 0, 1000, 0),
-    "IMC_AddSpiral": (1000, 1000, 500, 0, 1000, 0),
-}
-
-
-def functions(*tables: Iterable[str]) -> list[str]:
-    """Return the rows of functions; the manual describes some under another name."""
-    return [f"imc.{MANUAL_NAMES.get(name, name)}" for name in sorted(set(chain(*tables)))]
-
-
-MANUAL_NAMES = {
-    "IMC_MoveInTime": "IMC_MoveTP", "IMC_MoveInDist": "IMC_MovePP", "IMC_TgvelInTime": "IMC_MoveTV",
-    "IMC_TgvelInDist": "IMC_MovePV", "IMC_PutContourData": "IMC_AddContourData",
-}  # fmt: skip
-
-
 @pytest.mark.covers(*functions(SENDERS, WAITERS, PATHS), "imc.status.IMC_INVALID_FIFO", "imc.enum.FIFO_SEL")
 @pytest.mark.covers(
     "imc.fifo.SEL_IFIFO",
@@ -107,6 +36,7 @@ MANUAL_NAMES = {
     "imc.fifo.SEL_PFIFO1",
     "imc.fifo.SEL_PFIFO2",
     "imc.fifo.SEL_CFIFO",
+    *(f"imc.concept.{name}" for name in ("instruction_fifos", "ififo", "qfifo", "pfifo1", "pfifo2", "cfifo")),
 )
 @pytest.mark.parametrize(
     ("calls", "accepted"), [(SENDERS, {I, Q, P1, P2}), (WAITERS, {Q, P1, P2}), (PATHS, {P1, P2})]
@@ -138,7 +68,9 @@ def test_contour_points_go_to_queues_of_points_only(card: ToldCard, handle: lib.
 
 
 @pytest.mark.covers("imc.status.IMC_FIFO_FULL", *functions(SENDERS, WAITERS, PATHS))
-@pytest.mark.covers("imc.IMC_AddContourData", "imc.IMC_ClearFIFO")
+@pytest.mark.covers(
+    "imc.IMC_AddContourData",
+)
 def test_a_full_queue_refuses_and_nothing_is_sent_again(card: ToldCard, handle: lib.IMC_HANDLE) -> None:
     card.full = True
     for name, arguments in {**SENDERS, **WAITERS, **PATHS}.items():
@@ -154,7 +86,7 @@ AXIS_LAST = sorted(set(SENDERS) - {"IMC_SetMulParam", "IMC_InstallEvent"})
 @pytest.mark.covers("imc.status.IMC_INVALID_AXIS")
 @pytest.mark.covers("imc.IMC_GetCapData", "imc.IMC_GetParamBit")
 @pytest.mark.covers("imc.const.AXISNUM", *functions(AXIS_LAST))
-@pytest.mark.covers("imc.IMC_AddContourData")
+@pytest.mark.covers("imc.IMC_GetParam16", "imc.IMC_GetParam48")
 def test_axes_that_the_card_does_not_have(card: ToldCard, handle: lib.IMC_HANDLE) -> None:
     for name in AXIS_LAST:
         for axis in (-1, 4):
@@ -181,18 +113,7 @@ def test_axes_that_the_card_does_not_have(card: ToldCard, handle: lib.IMC_HANDLE
 
 
 @pytest.mark.covers("imc.IMC_GetParam32", "imc.IMC_SetParam16")
-@pytest.mark.covers(
-    "imc.IMC_GearFree",
-    "imc.IMC_GearInDist",
-    "imc.IMC_GearInTime",
-    "imc.IMC_GetCapData",
-    "imc.IMC_GetParam16",
-    "imc.IMC_GetParam48",
-    "imc.IMC_GetParamBit",
-    "imc.IMC_HandWheel",
-    "imc.IMC_MovePP",
-    "imc.IMC_MovePV",
-)
+@pytest.mark.covers("imc.param.emstop")
 def test_the_axis_of_a_parameter_of_the_card_does_not_matter(card: ToldCard, handle: lib.IMC_HANDLE) -> None:
     assert lib.IMC_SetParam16(handle, lib.emstopLoc, 0x10, 99, I) == lib.IMC_OK
     assert lib.IMC_GetParam32(handle, lib.ticksLoc, -1)[0] == lib.IMC_OK
@@ -208,7 +129,9 @@ def test_the_axis_of_a_parameter_of_the_card_does_not_matter(card: ToldCard, han
     "imc.IMC_SetParam16",
     "imc.IMC_TurnParamBit",
 )
-@pytest.mark.covers("imc.IMC_WaitParam", "imc.param.emstop")
+@pytest.mark.covers(
+    "imc.IMC_WaitParam",
+)
 def test_addresses_without_a_parameter(card: ToldCard, handle: lib.IMC_HANDLE) -> None:
     for at in (-1, 0, 3, 9, 24, 900, 1024, 40000):
         assert lib.IMC_SetParam16(handle, at, 1, 0, I) == lib.IMC_INVALID_PARAM, at
@@ -224,11 +147,8 @@ def test_addresses_without_a_parameter(card: ToldCard, handle: lib.IMC_HANDLE) -
 @pytest.mark.covers("imc.IMC_GetParam16")
 @pytest.mark.parametrize("name", ["mcsmoving", "curpos", "naxis", "fwversion", "gin1", "poserr"])
 @pytest.mark.covers(
-    "imc.IMC_GetParam32",
-    "imc.IMC_GetParamBit",
     "imc.IMC_SetParam16",
     "imc.IMC_TurnParamBit",
-    "imc.IMC_WaitParam",
 )
 @pytest.mark.covers(
     *(f"imc.IMC_{name}" for name in ("SetParam16", "SetParam32", "SetParam48", "SetParamBit", "ORXORParam")),
@@ -309,7 +229,6 @@ REFUSED: list[tuple[lib.IMC_STATUS, str, tuple[Any, ...]]] = [
 @pytest.mark.covers("imc.status.IMC_OUT_OF_RANGE")
 @pytest.mark.covers("imc.IMC_GetCapData")
 @pytest.mark.covers("imc.const.limits")
-@pytest.mark.covers("imc.IMC_GetParam16", "imc.IMC_ORXORParam")
 def test_numbers_out_of_range(card: ToldCard, handle: lib.IMC_HANDLE) -> None:
     for status, name, arguments in REFUSED:
         assert getattr(lib, name)(handle, *arguments) == status, (name, arguments)
@@ -337,14 +256,20 @@ def test_the_largest_that_is_taken(card: ToldCard, handle: lib.IMC_HANDLE) -> No
     assert lib.IMC_SetParamBit(handle, 562, 15, 1, 3, I) == lib.IMC_OK
 
 
-@pytest.mark.covers(
-    "imc.IMC_AddLineN",
-    "imc.IMC_GearFree",
-    "imc.IMC_GetCapData",
-    "imc.IMC_GetMulParam",
-    "imc.IMC_SetParam16",
-    "imc.IMC_SetParamBit",
-)
+@pytest.mark.covers("imc.IMC_SetParam16", "imc.IMC_SetParam32", "imc.IMC_SetParam48", "imc.IMC_WaitParamMask")
+@pytest.mark.covers("imc.type.IMC16", "imc.type.IMC32", "imc.type.__int64", "imc.status.IMC_OUT_OF_RANGE")
+def test_a_number_may_have_a_sign_or_not_within_its_width(card: ToldCard, handle: lib.IMC_HANDLE) -> None:
+    for name, at, bits in (("SetParam16", 307, 16), ("SetParam32", 317, 32), ("SetParam48", 337, 48)):
+        least, most = -(1 << bits - 1), (1 << bits) - 1
+        for value, status in ((least, 0), (most, 0), (1 << bits - 1, 0), (least - 1, 13), (most + 1, 13)):
+            assert getattr(lib, f"IMC_{name}")(handle, at, value, 0, Q) == status, (name, value)
+    assert lib.IMC_WaitParamMask(handle, 307, 0xFFFF, -0x8000, 0xFFFFFFFF, 0, Q) == lib.IMC_OK
+    for given in ((0x10000, 1, 1), (1, -0x8001, 1), (1, 1, 1 << 32)):
+        assert lib.IMC_WaitParamMask(handle, 307, *given, 0, Q) == lib.IMC_OUT_OF_RANGE
+    assert len(card.told) == 10
+
+
+@pytest.mark.covers("imc.param.groupnum", "imc.IMC_AddContourData", "imc.concept.cfifo")
 def test_contour_data_are_whole_points(card: ToldCard, handle: lib.IMC_HANDLE) -> None:
     card.memory[lib.groupnumLoc, 0] = 3
     assert lib.IMC_PutContourData(handle, list(range(30)), 30, C) == lib.IMC_OK
@@ -353,7 +278,6 @@ def test_contour_data_are_whole_points(card: ToldCard, handle: lib.IMC_HANDLE) -
 
 
 @pytest.mark.covers("imc.IMC_InstallEvent")
-@pytest.mark.covers("imc.param.groupnum")
 def test_events_that_do_not_fit_any_more(card: ToldCard, handle: lib.IMC_HANDLE) -> None:
     event = lib.EventInfo.of(lib.CMD_SET16, src2=1, dest=(307, 0))
     card.room_for_events = 3
@@ -385,6 +309,7 @@ def test_events_that_mean_nothing(
 
 
 @pytest.mark.covers(*(f"imc.event.{command.name}" for command in lib.IMC_EVENT_CMD), "imc.struct.EventInfo")
+@pytest.mark.covers("imc.IMC_InstallEvent")
 def test_a_copy_and_a_constant_need_a_place_and_a_result_does_not(
     card: ToldCard, handle: lib.IMC_HANDLE
 ) -> None:
@@ -400,7 +325,6 @@ def test_a_copy_and_a_constant_need_a_place_and_a_result_does_not(
 
 
 @pytest.mark.covers("imc.IMC_GetMulParam")
-@pytest.mark.covers("imc.IMC_InstallEvent")
 def test_a_refused_read_leaves_its_structures_alone(handle: lib.IMC_HANDLE) -> None:
     elements = many((12, 0, 2), (9, 0, 2))
     elements[0].data[0] = 77
@@ -408,7 +332,9 @@ def test_a_refused_read_leaves_its_structures_alone(handle: lib.IMC_HANDLE) -> N
     assert elements[0].data[0] == 77
 
 
-@pytest.mark.covers("imc.IMC_GetMulParam")
+@pytest.mark.covers(
+    "imc.param.groupnum", "imc.param.pathaxisnum1", "imc.param.pathaxisnum2", "imc.IMC_AddContourData"
+)
 def test_points_for_a_path_queue_are_an_instruction_of_whole_points(
     card: ToldCard, handle: lib.IMC_HANDLE
 ) -> None:
@@ -424,7 +350,7 @@ def test_points_for_a_path_queue_are_an_instruction_of_whole_points(
 
 
 @pytest.mark.covers("imc.IMC_SetMulParam")
-@pytest.mark.covers("imc.param.groupnum", "imc.param.pathaxisnum1", "imc.param.pathaxisnum2")
+@pytest.mark.covers("imc.IMC_AddContourData", "imc.IMC_InstallEvent")
 def test_what_a_queue_never_holds_is_out_of_range_and_not_a_full_queue() -> None:
     card = Card(parse_card("ready = true\n[depths]\nififo = 64\nqfifo = 64\npfifo1 = 64\ncfifo = 100\n"))
     handle = opened(card)
@@ -443,7 +369,7 @@ def test_what_a_queue_never_holds_is_out_of_range_and_not_a_full_queue() -> None
     lib.detach()
 
 
-@pytest.mark.covers("imc.IMC_AddContourData", "imc.IMC_InstallEvent", "imc.IMC_SetMulParam")
+@pytest.mark.covers("imc.file.paramdef_h")
 def test_a_star_import_brings_functions_codes_and_addresses() -> None:
     names: dict[str, Any] = {}
     exec("from polycnc.controllers.imc.imclib import *", names)
@@ -455,7 +381,7 @@ def test_a_star_import_brings_functions_codes_and_addresses() -> None:
 
 
 @pytest.mark.covers("imc.IMC_SetParam32")
-@pytest.mark.covers("imc.IMC_MoveAbsolute", "imc.param.mcstgpos")
+@pytest.mark.covers("imc.param.mcstgpos", "imc.IMC_MoveVelocity")
 def test_floats_are_converted_where_c_converts_them(card: ToldCard, handle: lib.IMC_HANDLE) -> None:
     position: Any = -1234.9
     velocity: Any = 2.5 * 65536

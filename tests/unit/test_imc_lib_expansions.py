@@ -161,6 +161,7 @@ def test_functions_of_motion_are_one_instruction(card: ToldCard, handle: lib.IMC
 @pytest.mark.covers(
     *(f"imc.sourcetype.{k}" for k in range(5)), "imc.const.sourcetype", "imc.const.synsourcetype"
 )
+@pytest.mark.covers("imc.param.gearsrc")
 def test_source_types_are_addresses_of_velocities_and_positions(
     card: ToldCard, handle: lib.IMC_HANDLE
 ) -> None:
@@ -172,7 +173,8 @@ def test_source_types_are_addresses_of_velocities_and_positions(
     assert [each["synsrc"] for each in found] == [225, 78, 10, 33, 86]
 
 
-@pytest.mark.covers("imc.IMC_HandWheel")
+@pytest.mark.covers("imc.IMC_HandWheel", "imc.IMC_GearFree", "imc.IMC_GearInDist", "imc.IMC_GearInTime")
+@pytest.mark.covers("imc.param.gearratio", "imc.type.S16.32")
 @pytest.mark.parametrize(
     ("raw", "words"),
     [(0.5, (0x0000, 0x8000, 0x0000)), (-1.5, (0x0000, 0x8000, 0xFFFE)), (2**-32, (1, 0, 0))]
@@ -180,15 +182,18 @@ def test_source_types_are_addresses_of_velocities_and_positions(
     + [(2.0 / 3.0, (0xAAAB, 0xAAAA, 0)), (-2.0 / 3.0, (0x5555, 0x5555, 0xFFFF)), (7.25, (0, 0x4000, 7))],
 )
 @pytest.mark.covers("imc.type.IMCFLOAT")
-@pytest.mark.covers("imc.IMC_GearInDist", "imc.param.gearsrc")
 def test_ratios_become_48_bits(
     card: ToldCard, handle: lib.IMC_HANDLE, raw: float, words: tuple[int, ...]
 ) -> None:
     lib.IMC_HandWheel(handle, raw, 0, 2, lib.SEL_IFIFO)
-    ((_, instruction),) = card.told
-    assert isinstance(instruction, WriteMany)
-    value = named(instruction)["gearratio"]
-    assert tuple(value >> 16 * k & 0xFFFF for k in range(3)) == words
+    lib.IMC_GearFree(handle, raw, 0, 0, 2, lib.SEL_QFIFO)
+    lib.IMC_GearInDist(handle, raw, 0, 0, 1, 0, 70, 2, lib.SEL_IFIFO)
+    lib.IMC_GearInTime(handle, raw, 0, 0, 70, 2, lib.SEL_IFIFO)
+    sent = [instruction for _, instruction in card.told if isinstance(instruction, WriteMany)]
+    assert len(sent) == 4
+    for each in sent:
+        value = named(each)["gearratio"]
+        assert tuple(value >> 16 * k & 0xFFFF for k in range(3)) == words
 
 
 @pytest.mark.covers(
@@ -206,7 +211,6 @@ def test_ratios_become_48_bits(
     "imc.type.IMC32",
     "imc.type.__int64",
 )
-@pytest.mark.covers("imc.IMC_HandWheel")
 def test_basic_functions(card: ToldCard, handle: lib.IMC_HANDLE) -> None:
     calls: list[tuple[str, tuple[Any, ...], Any]] = [
         ("IMC_SetParam16", (152, -1, 1, 1), Write(152, -1, 1, 1)),
@@ -234,16 +238,6 @@ def test_basic_functions(card: ToldCard, handle: lib.IMC_HANDLE) -> None:
 
 
 @pytest.mark.covers("imc.IMC_SetMulParam", "imc.struct.WR_MUL_DES")
-@pytest.mark.covers(
-    "imc.IMC_ORXORParam",
-    "imc.IMC_SetParam32",
-    "imc.IMC_SetParam48",
-    "imc.IMC_SetParamBit",
-    "imc.IMC_TurnParamBit",
-    "imc.IMC_WaitParamBit",
-    "imc.IMC_WaitParamMask",
-    "imc.IMC_WaitTime",
-)
 def test_several_parameters_are_one_instruction(card: ToldCard, handle: lib.IMC_HANDLE) -> None:
     elements = [lib.WR_MUL_DES.of(12, 0, 2, -7), lib.WR_MUL_DES.of(23, 1, 1, -1)]
     elements.append(lib.WR_MUL_DES.of(175, 2, 3, -(1 << 46) - 5))
@@ -269,7 +263,6 @@ def test_several_parameters_are_one_instruction(card: ToldCard, handle: lib.IMC_
     "imc.struct.PFIFOSegInfo",
 )
 @pytest.mark.covers("imc.const.arc_dir", "imc.const.dir_conflict")
-@pytest.mark.covers("imc.IMC_SetMulParam")
 def test_segments(card: ToldCard, handle: lib.IMC_HANDLE) -> None:
     of = lib.PFIFOSegData.of
     ends, center = (1900000003, -1800000005), (-1700000007, 1600000009)
@@ -325,16 +318,6 @@ def test_segments(card: ToldCard, handle: lib.IMC_HANDLE) -> None:
     "imc.struct.EventInfo.Src2.data32",
     "imc.struct.EventInfo.Src2.data48",
 )
-@pytest.mark.covers(
-    "imc.IMC_AddArc",
-    "imc.IMC_AddArcLine",
-    "imc.IMC_AddArcLineWithVel",
-    "imc.IMC_AddArcWithVel",
-    "imc.IMC_AddLineN",
-    "imc.IMC_AddLineNWithVel",
-    "imc.IMC_AddSpiral",
-    "imc.IMC_AddSpiralWithVel",
-)
 def test_events_take_the_operands_of_their_command(card: ToldCard, handle: lib.IMC_HANDLE) -> None:
     of = lib.EventInfo.of
     factor = of(lib.CMD_SCA32i, src1=(317, 0), dest=(319, 0))
@@ -386,13 +369,6 @@ def test_reading(card: ToldCard, handle: lib.IMC_HANDLE) -> None:
 
 
 @pytest.mark.covers("imc.IMC_GetCapData")
-@pytest.mark.covers(
-    "imc.IMC_GetMulParam",
-    "imc.IMC_GetParam16",
-    "imc.IMC_GetParam32",
-    "imc.IMC_GetParam48",
-    "imc.IMC_GetParamBit",
-)
 def test_captured_positions(card: ToldCard, handle: lib.IMC_HANDLE) -> None:
     places = [(-1) ** k * (2_000_000_000 + k) for k in range(130)]
     card.captured[2] = list(places)

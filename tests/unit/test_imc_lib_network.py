@@ -116,11 +116,16 @@ def test_password_of_4_to_99_characters() -> None:
 
 
 @pytest.mark.covers("imc.status.IMC_VERSION_ERROR", "imc.param.fwversion")
-@pytest.mark.covers("imc.IMC_Open")
+@pytest.mark.covers("imc.IMC_Open", "imc.IMC_OpenX", "imc.IMC_OpenUsePassword")
 def test_firmware_of_another_generation_is_not_opened() -> None:
-    lib.attach(ToldCard(fwversion=410), ToldCard(fwversion=305))
-    assert lib.IMC_Open(0, 0) == (lib.IMC_VERSION_ERROR, None)
-    assert lib.IMC_Open(0, 1)[0] == lib.IMC_OK
+    others, same = (0, 99, 299, 400, 1320, 65535), (300, 305, 399)
+    lib.attach(*(ToldCard(fwversion=version, password="word") for version in (*others, *same)))
+    for number in range(len(others)):
+        assert lib.IMC_Open(0, number) == lib.IMC_OpenX(0, number, 40, 0) == (lib.IMC_VERSION_ERROR, None)
+        assert lib.IMC_OpenUsePassword(0, number, "word") == (lib.IMC_VERSION_ERROR, None)
+    for number in range(len(others), len(others) + len(same)):
+        assert lib.IMC_Open(0, number)[0] == lib.IMC_OpenX(0, number, 40, 0)[0] == lib.IMC_OK
+        assert lib.IMC_OpenUsePassword(0, number, "word")[0] == lib.IMC_OK
 
 
 @pytest.mark.covers("imc.IMC_Close", "imc.status.IMC_DEVICE_NOT_OPEN", "imc.type.IMC_HANDLE")

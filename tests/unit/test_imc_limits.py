@@ -151,7 +151,6 @@ def test_an_error_that_no_mask_names_changes_nothing() -> None:
 
 
 @shows("aioctr curpos curvel error mcstgvel")
-@pytest.mark.covers("imc.param.stopfilt")
 @pytest.mark.covers("imc.param.stopmode")
 @pytest.mark.parametrize(("soft", "way", "bit"), [(0, 1, 1), (0, -1, 2), (1, 1, 4), (1, -1, 8)])
 @pytest.mark.covers("imc.param.nsoftlim", "imc.param.psoftlim")
@@ -351,7 +350,6 @@ def test_run_set_to_0_stops_at_once_and_a_gear_is_left() -> None:
 
 
 @shows("aio")
-@pytest.mark.covers("imc.param.gearsrc")
 def test_a_card_that_is_switched_on_at_its_switches_shows_them() -> None:
     card = ready_card(
         "number_of_axes = 3\n[[axis]]\n[[axis]]\n"

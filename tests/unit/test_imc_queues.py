@@ -144,6 +144,7 @@ def test_a_wait_that_is_never_met_goes_on_after_its_time() -> None:
 @pytest.mark.parametrize(
     ("mask", "data", "met"), [(0x00FF, 0x0034, True), (0x00FF, 0x1234, False), (0xFFFF, 0x1234, True)]
 )
+@pytest.mark.covers("imc.IMC_WaitParam")
 def test_a_masked_wait_compares_with_data_as_given(mask: int, data: int, met: bool) -> None:
     card = ready_card()
     set_now(card, ("user16b1", 0x1234))

@@ -19,6 +19,7 @@ from polycnc.controllers.imc import imclib as lib
 from polycnc.controllers.imc.core._parameters import PARAMETERS, address
 from support.imc_bench import Bench
 from support.imc_walk import CARD_FILE, OTHERWISE, walk
+from support.imc_wander import WANDER_FILE, wander
 
 RECORDED = Path(__file__).parents[1] / "golden" / "imc"
 IF, Q, P1, P2, C = lib.FIFO_SEL
@@ -599,6 +600,8 @@ SCENES["edges_otherwise"] = ("ready = true\n" + OTHERWISE + EDGES, edges)
 for number in range(1, 5):
     system = (OTHERWISE if number > 2 else "") + CARD_FILE
     SCENES[f"walk{number}"] = ("ready = true\n" + system, partial(walk, seed=number, acts=400))
+for number in (1, 2):
+    SCENES[f"wander{number}"] = ("ready = true\n" + WANDER_FILE, partial(wander, seed=number, acts=500))
 
 
 # What the scenes show of the manual: all of it but for cards on a network, C types and what no card does.
