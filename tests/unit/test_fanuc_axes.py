@@ -100,6 +100,7 @@ def test_the_default_node_can_be_changed_and_nodes_be_listed() -> None:
 
 @pytest.mark.covers("fanuc.EW_HSSB", "fanuc.concept.return_convention")
 @pytest.mark.covers("fanuc.cnc_absolute", "fanuc.cnc_allclibhndl")
+@pytest.mark.covers("fanuc.cnc_dwnstart")
 def test_a_fault_of_a_node_is_the_answer_of_every_call() -> None:
     control, _ = attached()
     node = fwlib.attach(0, control)
@@ -113,6 +114,7 @@ def test_a_fault_of_a_node_is_the_answer_of_every_call() -> None:
 
 
 @pytest.mark.covers("fanuc.cnc_download", "fanuc.cnc_freelibhndl")
+@pytest.mark.covers("fanuc.cnc_dwnstart")
 def test_closing_a_handle_breaks_its_transfers_off_and_no_others() -> None:
     control, handle = attached()
     _, other = fwlib.cnc_allclibhndl()
@@ -127,6 +129,7 @@ def test_closing_a_handle_breaks_its_transfers_off_and_no_others() -> None:
 
 
 @pytest.mark.covers("fanuc.cnc_freelibhndl", "fanuc.cnc_relative")
+@pytest.mark.covers("fanuc.cnc_wrrelpos")
 def test_two_sessions_have_handles_of_their_own() -> None:
     control, handle = attached()
     session = fwlib.Session()
@@ -364,6 +367,12 @@ def test_lengths_and_axes_of_position_reads(name: str) -> None:
     "fanuc.cnc_dwnend", "fanuc.cnc_rdmacro", "fanuc.cnc_rdparam", "fanuc.cnc_rdtofs", "fanuc.cnc_wrtofs"
 )
 @covers("concept.option_none")
+@pytest.mark.covers(
+    "fanuc.cnc_dwnend.err.EW_DATA",
+    "fanuc.cnc_dwnstart",
+    "fanuc.cnc_wrparam",
+    "fanuc.cnc_wrparam.err.EW_NOOPT",
+)
 def test_reads_need_no_option() -> None:
     control, handle = attached(options=False)
     for name in READS:
@@ -481,6 +490,7 @@ def test_bits_of_the_alarm_status(bit: int) -> None:
 # ---------------------------------------------------------------------- time
 
 
+@pytest.mark.covers("fanuc.cnc_absolute")
 def test_a_polling_program_sees_time_pass_and_one_cycle_in_one_round() -> None:
     control, handle = attached(Poll(1))
     registered(control, O5="\nG1 X-6. Y8. F3000\nM30\n")
@@ -499,6 +509,7 @@ def test_a_polling_program_sees_time_pass_and_one_cycle_in_one_round() -> None:
     assert control.clock.cycles == 0
 
 
+@pytest.mark.covers("fanuc.cnc_incpoint")
 def test_a_program_that_tries_again_what_is_busy_sees_time_pass() -> None:
     control, handle = attached(Poll(1))
     to = bytes(fwlib.ODBPOS(idata=1, ldata=700))

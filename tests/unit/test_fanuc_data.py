@@ -73,6 +73,7 @@ def test_tool_offsets_that_are_refused() -> None:
         pytest.param("IS-C", 9_999_999, 0.0001, 0.00001, marks=covers("units.IS_C", "ncparam.1004_1")),
     ],
 )
+@pytest.mark.covers("fanuc.cnc_wrtofs")
 def test_unit_and_range_of_tool_offsets(increment: str, limit: int, mm: float, inch: float) -> None:
     for model in ("H", "D"):
         control, handle = attached(increment=increment, model=model)
@@ -186,6 +187,7 @@ AXIS_TYPES = {
 @pytest.mark.covers("fanuc.cnc_rdparam.err.EW_ATTRIB", "fanuc.cnc_wrparam", "fanuc.cnc_rdparam")
 @pytest.mark.parametrize("kind", [pytest.param(k, marks=covers(f"paramtype.{k}"), id=k) for k in TYPES])
 @covers("enum.param_axis.0")
+@pytest.mark.covers("fanuc.cnc_rdparam.err.EW_LENGTH", "fanuc.cnc_rdparar", "fanuc.cnc_wrparam.err.EW_ATTRIB")
 def test_parameters_that_have_one_value(kind: str) -> None:
     _, handle = attached()
     number, given, attribute, size = TYPES[kind]
@@ -213,6 +215,13 @@ def test_parameters_that_have_one_value(kind: str) -> None:
     "kind", [pytest.param(k, marks=covers(f"paramtype.{k}_axis"), id=k) for k in AXIS_TYPES]
 )
 @covers("enum.param_axis.1..m", "enum.param_axis.ALL_AXES")
+@pytest.mark.covers(
+    "fanuc.cnc_rdparam.err.EW_ATTRIB",
+    "fanuc.cnc_rdparam.err.EW_LENGTH",
+    "fanuc.cnc_rdparar",
+    "fanuc.cnc_wrparam.err.EW_ATTRIB",
+    "fanuc.cnc_wrparas",
+)
 def test_parameters_of_axes(kind: str) -> None:
     _, handle = attached()
     number, values, size = AXIS_TYPES[kind]
@@ -292,6 +301,7 @@ def test_example_stroke_limits_act_on_the_machine() -> None:
     "cnc_wrparam.err.EW_NUMBER", "cnc_wrparam.err.EW_ATTRIB", "cnc_wrparam.err.EW_NOOPT", "cnc_wrparam.err.EW_PROT",
     "option.param_write", "ODBPARAIF.prm_type.bit5", "ODBPARAIF.prm_type.bit7",
 )  # fmt: skip
+@pytest.mark.covers("fanuc.cnc_wrparam")
 def test_parameters_that_are_refused_change_nothing() -> None:
     control, handle = attached(options=("pmc_axis",))
     before = {key: control.parameters.value(*key) for key in control.parameters._values}
@@ -339,6 +349,9 @@ def test_a_bit_is_changed_by_writing_its_byte() -> None:
 
 @pytest.mark.covers("fanuc.cnc_delete", "fanuc.cnc_rddynamic", "fanuc.cnc_search", "fanuc.cnc_upstart")
 @covers("concept.ps000_after_write", "ODBPARAIF.prm_type.bit6")
+@pytest.mark.covers(
+    "fanuc.cnc_delete.err.EW_BUSY", "fanuc.cnc_dwnstart", "fanuc.cnc_search.err.EW_BUSY", "fanuc.cnc_wrparam"
+)
 def test_some_parameters_need_the_power_switched_off() -> None:
     control, handle = attached(axes=2)
     registered(control, O12="\nM30\n")
@@ -457,6 +470,7 @@ def record(number: int, kind: int, axis: int, *values: int) -> bytes:
 
 
 @pytest.mark.covers("fanuc.cnc_wrparas")
+@pytest.mark.covers("fanuc.cnc_rdparar")
 def test_what_is_read_as_records_can_be_written_back() -> None:
     control, handle = attached()
     for number in (1420, 1423):
@@ -486,7 +500,7 @@ REFUSED: list[tuple[EW, bytes, int]] = [
 
 @pytest.mark.covers("fanuc.cnc_wrparas")
 @covers(
-    "cnc_wrparas.err.EW_LENGTH", "cnc_wrparas.err.EW_NUMBER", "cnc_wrparas.err.EW_ATTRIB", "cnc_wrparas.err.EW_NOOPT",
+    "cnc_wrparas.err.EW_LENGTH", "option.param_write", "cnc_wrparas.err.EW_NUMBER", "cnc_wrparas.err.EW_ATTRIB", "cnc_wrparas.err.EW_NOOPT",
     "cnc_wrparas.err.EW_PROT",
 )  # fmt: skip
 def test_records_that_are_refused_change_nothing() -> None:
@@ -605,7 +619,7 @@ def test_settings_are_the_parameters_of_the_setting_screen() -> None:
 @pytest.mark.covers("fanuc.cnc_rdsetr", "fanuc.cnc_wrsets")
 @covers(
     "cnc_rdsetr.err.EW_LENGTH", "cnc_rdsetr.err.EW_NUMBER", "cnc_rdsetr.err.EW_ATTRIB", "cnc_wrsets.err.EW_LENGTH",
-    "cnc_wrsets.err.EW_NUMBER", "cnc_wrsets.err.EW_ATTRIB", "cnc_wrsets.err.EW_NOOPT",
+    "option.param_write", "cnc_wrsets.err.EW_NUMBER", "cnc_wrsets.err.EW_ATTRIB", "cnc_wrsets.err.EW_NOOPT",
 )  # fmt: skip
 def test_settings_that_are_refused() -> None:
     control, handle = attached(options=False)

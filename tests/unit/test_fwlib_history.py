@@ -10,6 +10,7 @@ import pytest
 
 from polycnc.controllers.fanuc import PowerMate, fwlib
 from polycnc.controllers.fanuc.fwlib import EW
+from support.refusals import refused
 
 AT = datetime(2031, 4, 17, 22, 53, 41)
 
@@ -251,35 +252,19 @@ def test_fewer_records_than_asked_for() -> None:
 @pytest.mark.parametrize(
     ("function", "first", "last", "length", "code"),
     [
-        pytest.param(
+        *refused(
             "cnc_rdophistry",
-            1,
-            2,
-            6 + 8,
-            "EW_LENGTH",
-            marks=pytest.mark.covers("fanuc.cnc_rdophistry.err.EW_LENGTH"),
+            *(("cnc_rdophistry", 1, 2, 6 + length, "EW_LENGTH") for length in (8, 15, 17, 24)),
         ),
-        ("cnc_rdophistry", 1, 2, 6 + 24, "EW_LENGTH"),
         ("cnc_rdophistry", 2, 1, 6 + 8, "EW_NUMBER"),
-        pytest.param(
+        ("cnc_rdophistry", 0, 1, 6 + 16, "EW_NUMBER"),
+        *refused(
             "cnc_rdalmhistry",
-            1,
-            2,
-            6 + 48,
-            "EW_LENGTH",
-            marks=pytest.mark.covers("fanuc.cnc_rdalmhistry.err.EW_LENGTH"),
+            *(("cnc_rdalmhistry", 1, 2, 6 + length, "EW_LENGTH") for length in (48, 95, 97)),
+            ("cnc_rdalmhistry", 0, 1, 6 + 96, "EW_NUMBER"),
+            ("cnc_rdalmhistry", 1, 3, 6 + 144, "EW_NUMBER"),
+            ("cnc_rdalmhistry", 2, 1, 6, "EW_NUMBER"),
         ),
-        ("cnc_rdalmhistry", 1, 2, 6 + 97, "EW_LENGTH"),
-        pytest.param(
-            "cnc_rdalmhistry",
-            0,
-            1,
-            6 + 96,
-            "EW_NUMBER",
-            marks=pytest.mark.covers("fanuc.cnc_rdalmhistry.err.EW_NUMBER"),
-        ),
-        ("cnc_rdalmhistry", 1, 3, 6 + 144, "EW_NUMBER"),
-        ("cnc_rdalmhistry", 2, 1, 6, "EW_NUMBER"),
     ],
 )
 def test_reading_is_refused(function: str, first: int, last: int, length: int, code: str) -> None:
@@ -405,6 +390,7 @@ def test_a_wrong_table_is_refused_whole() -> None:
     assert all(each.sig_name == 0 for each in library.cnc_rdhissgnl(handle)[1].data)
 
 
+@pytest.mark.covers("fanuc.cnc_rdhissgnl")
 def test_histories_and_table_outlast_switching_off(tmp_path: Path) -> None:
     control, library, handle = fresh(memory=tmp_path / "memory")
     monitored(library, handle, (11, 3, 1007, 0x18))

@@ -28,6 +28,7 @@ ALL = 0x1FB9
 
 
 @pytest.mark.covers("fanuc.IODBSGNL.machn_lock.0", "fanuc.IODBSGNL.machn_lock.1")
+@pytest.mark.covers("fanuc.cnc_wropnlsgnl")
 def test_the_machine_lock_lets_programs_run_without_the_axes() -> None:
     control, library, handle = written(machn_lock=1)
     control.programs.register(7, "O0007\nG1X3.F6000\nG4X0.05\nM30\n")
@@ -89,6 +90,7 @@ def test_a_bit_selects_its_signal_alone(bit: int, name: str, value: int) -> None
     *(f"fanuc.IODBSGNL.type.bit{bit}" for bit in UNUSED),
     *(f"fanuc.IODBSGNL.{element}" for element in ("datano", "hndl_ax", "hndl_mv", "spdl_ovrd")),
 )
+@pytest.mark.covers("fanuc.cnc_wropnlsgnl")
 def test_unused_bits_select_nothing() -> None:
     control = PowerMate()
     library, handle = at(control)
@@ -125,6 +127,7 @@ def test_a_bad_value_writes_nothing(name: str, value: int) -> None:
         for value, aut in enumerate((0, 1, 3, 4, 5, 9))
     ],
 )
+@pytest.mark.covers("fanuc.cnc_statinfo")
 def test_mode(value: int, aut: int) -> None:
     _, library, handle = written(mode=value)
     assert library.cnc_statinfo(handle)[1].aut == aut
@@ -236,6 +239,7 @@ def test_memory_protection() -> None:
 
 
 @pytest.mark.covers("fanuc.IODBSGNL.feed_hold.0", "fanuc.IODBSGNL.feed_hold.1")
+@pytest.mark.covers("fanuc.cnc_statinfo")
 def test_feed_hold_holds_and_keeps_from_starting() -> None:
     control, library, handle = written(feed_hold=0)
     control.programs.memory.create("O0004", b"O0004\nG1 X90. F240\n")
@@ -344,6 +348,7 @@ def test_a_signal_has_a_name_of_eight_characters(bit: int) -> None:
 
 
 @pytest.mark.covers("fanuc.cnc_rdopnlgnrl", "fanuc.cnc_rdopnlgsname")
+@pytest.mark.covers("fanuc.cnc_statinfo")
 def test_the_panel_outlasts_switching_off(tmp_path: Path) -> None:
     control = PowerMate(memory=tmp_path / "memory")
     library, handle = at(control)

@@ -28,6 +28,7 @@ def covers(*rows: str) -> pytest.MarkDecorator:
     "ODBAHIS.s_no", "ODBAHIS.e_no", "ODBAHIS.alm_his.alm_no", "ODBAHIS.alm_his.year", "ODBAHIS.alm_his.month",
     "ODBAHIS.alm_his.day", "ODBAHIS.alm_his.hour", "ODBAHIS.alm_his.minute", "ODBAHIS.alm_his.second",
 )  # fmt: skip
+@pytest.mark.covers("fanuc.cnc_rdalmhistry")
 def test_an_alarm_of_the_history_says_when_it_came() -> None:
     control, handle = attached()
     assert fwlib.cnc_clearophis(handle, 1) == OK
@@ -59,6 +60,7 @@ def test_an_alarm_of_the_history_says_when_it_came() -> None:
     "ODBHIS.minute",
     "ODBHIS.second",
 )
+@pytest.mark.covers("fanuc.cnc_rdophistry")
 def test_records_of_the_operation_history_say_what_was_done_and_when() -> None:
     control, handle = attached()
     control.clock.set_now(AT)
@@ -80,6 +82,7 @@ def test_records_of_the_operation_history_say_what_was_done_and_when() -> None:
 
 @pytest.mark.covers("fanuc.cnc_alarm")
 @covers("ODBALM.data", "ALMINFO.alm.alm_no", "ODBST.alarm")
+@pytest.mark.covers("fanuc.cnc_rdalminfo", "fanuc.cnc_statinfo")
 def test_alarms_as_bits_and_by_number() -> None:
     control, handle = attached()
     assert (fwlib.cnc_alarm(handle)[1].data, fwlib.cnc_statinfo(handle)[1].alarm) == (0, 0)
@@ -93,6 +96,7 @@ def test_alarms_as_bits_and_by_number() -> None:
 
 @pytest.mark.covers("fanuc.cnc_statinfo")
 @covers("ODBST.run", "ODBST.motion", "ODBST.emergency", "ODBST.edit")
+@pytest.mark.covers("fanuc.cnc_dwnstart")
 def test_the_state_of_a_control_that_runs_holds_dwells_and_stops() -> None:
     control, handle = attached(axes=1)
     registered(control, O7="\nG1X4.F3000\nG4X0.2\nM30\n")
@@ -132,6 +136,7 @@ PANEL: dict[str, tuple[int, int, Callable[[PowerMate], object], object]] = {
 
 @covers("IODBSGNL.type")
 @pytest.mark.parametrize("name", [pytest.param(each, marks=covers(f"IODBSGNL.{each}")) for each in PANEL])
+@pytest.mark.covers("fanuc.cnc_rdopnlsgnl", "fanuc.cnc_wropnlsgnl")
 def test_a_signal_of_the_panel_acts(name: str) -> None:
     bit, value, seen, wanted = PANEL[name]
     control, handle = attached()
@@ -147,6 +152,7 @@ def test_a_signal_of_the_panel_acts(name: str) -> None:
 
 @pytest.mark.covers("fanuc.cnc_wropnlgnrl")
 @covers("IODBGNRL.type")
+@pytest.mark.covers("fanuc.cnc_rdopnlgnrl")
 def test_general_purpose_signals_are_chosen_by_their_bits() -> None:
     _, handle = attached()
     assert fwlib.cnc_wropnlgnrl(handle, fwlib.IODBGNRL(type=0x2C, sgnal=0xFF)) == OK
@@ -156,6 +162,7 @@ def test_general_purpose_signals_are_chosen_by_their_bits() -> None:
 
 @pytest.mark.covers("fanuc.pmc_wrpmcrng")
 @covers("IODBPMC.type_a", "IODBPMC.datano_s", "IODBPMC.datano_e")
+@pytest.mark.covers("fanuc.pmc_rdpmcrng")
 def test_pmc_data_say_what_they_are_of() -> None:
     control, handle = attached()
     control.pmc.write("D", 101, b"\x11\x22\x33")
@@ -171,6 +178,7 @@ def test_pmc_data_say_what_they_are_of() -> None:
 
 @pytest.mark.covers("fanuc.pmc_rdpmcinfo")
 @covers("ODBPMCINF.info.pmc_adr", "ODBPMCINF.info.top_num", "ODBPMCINF.info.last_num")
+@pytest.mark.covers("fanuc.pmc_rdpmcrng", "fanuc.pmc_rdpmcrng.err.EW_NUMBER")
 def test_pmc_areas_have_a_letter_and_ends() -> None:
     _, handle = attached()
     code, found = fwlib.pmc_rdpmcinfo(handle, 7)
@@ -195,6 +203,7 @@ def test_stroke_limits_are_written_and_read_by_number_and_axis() -> None:
 
 
 @covers("IODBPSD.u.cdata", "IODBPSD.u.cdatas", "IODBPSD.u.idata", "IODBPSD.u.idatas")
+@pytest.mark.covers("fanuc.cnc_rdparam", "fanuc.cnc_wrparam")
 def test_parameters_of_bits_and_words_act() -> None:
     control, handle = attached()
     assert fwlib.cnc_wrparam(handle, 5, psd(3202, 0, cdata=0x11)) == OK
@@ -211,6 +220,7 @@ def test_parameters_of_bits_and_words_act() -> None:
 @pytest.mark.covers("fanuc.cnc_wrparas")
 @covers("ODBPARAIF.info.prm_type", "paramtype.two_word", "paramtype.word", "paramtype.byte", "paramtype.bit")
 @pytest.mark.parametrize(("number", "size"), [(3202, 1), (6710, 1), (1410, 2), (6711, 4)])
+@pytest.mark.covers("fanuc.cnc_rdparar")
 def test_types_of_parameters_are_the_bytes_of_their_records(number: int, size: int) -> None:
     control, handle = attached()
     code, info = fwlib.cnc_rdparainfo(handle, number, 1)
@@ -231,6 +241,7 @@ def test_types_of_parameters_are_the_bytes_of_their_records(number: int, size: i
     "ODBDGN.datano", "ODBDGN.u.cdata", "ODBDGN.u.cdatas", "ODBDGN.u.idata", "ODBDGN.u.idatas", "ODBDGN.u.ldata",
     "ODBDGN.u.ldatas",
 )  # fmt: skip
+@pytest.mark.covers("fanuc.cnc_diagnoss")
 def test_diagnosis_data_of_a_control_that_moves() -> None:
     control, handle = attached()
     registered(control, O7="\nG1X20.Y-10.F3000\nM30\n")
@@ -277,6 +288,7 @@ def test_positions_of_all_axes_at_once() -> None:
 
 
 @covers("ODBM.datano", "ODBM.mcr_val", "ODBTOFS.datano", "ODBTOFS.type", "ODBTOFS.data", "PRGDIR.prg_data")
+@pytest.mark.covers("fanuc.cnc_rdmacro", "fanuc.cnc_rdprogdir", "fanuc.cnc_rdtofs")
 def test_variables_offsets_and_the_directory() -> None:
     control, handle = attached()
     control.macros.set(502, -12.75)
@@ -291,6 +303,7 @@ def test_variables_offsets_and_the_directory() -> None:
 
 
 @covers("ODBMDL.type", "ODBMDL.aux.aux_data", "ODBMDL.aux.flag1", "ODBMDL.raux2")
+@pytest.mark.covers("fanuc.cnc_modal")
 def test_modal_data_of_the_block_that_was_asked_for() -> None:
     control, handle = attached()
     registered(control, O7="\nG1X2.5Y-3.F600\nX4.F1200\nM30\n")
@@ -319,6 +332,7 @@ def test_an_operation_signal_has_the_value_that_is_given() -> None:
 
 
 @covers("ODBSYSC.frmmin", "ODBSYSC.drmmin", "ODBSYSC.pmcmin", "ODBSYSC.submin")
+@pytest.mark.covers("fanuc.cnc_sysconfig")
 def test_modules_of_the_control() -> None:
     control, handle = attached()
     control.configuration = Configuration(
@@ -376,6 +390,7 @@ def test_a_call_answers_the_code_of_the_manual(name: str) -> None:
 
 
 @covers("EW_NOOPT")
+@pytest.mark.covers("fanuc.cnc_rdopmsg")
 def test_an_option_that_is_not_fitted_is_refused() -> None:
     control = PowerMate(options=("pmc_axis",))
     fwlib.detach()
@@ -387,6 +402,7 @@ def test_an_option_that_is_not_fitted_is_refused() -> None:
 
 @covers("ODBSYSC.sv3min", "ODBSYSC.sv5min")
 @pytest.mark.parametrize("axes", [1, 2, 3, 4, 5, 6])
+@pytest.mark.covers("fanuc.cnc_sysconfig")
 def test_servo_modules_are_there_for_every_pair_of_axes(axes: int) -> None:
     found = fwlib.cnc_sysconfig(attached(axes=axes)[1])[1]
     assert (found.sv3min, found.sv5min) == (0 if axes > 2 else -1, 0 if axes > 4 else -1)
