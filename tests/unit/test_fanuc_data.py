@@ -500,7 +500,8 @@ REFUSED: list[tuple[EW, bytes, int]] = [
 
 @pytest.mark.covers("fanuc.cnc_wrparas")
 @covers(
-    "cnc_wrparas.err.EW_LENGTH", "option.param_write", "cnc_wrparas.err.EW_NUMBER", "cnc_wrparas.err.EW_ATTRIB", "cnc_wrparas.err.EW_NOOPT",
+    "cnc_wrparas.err.EW_LENGTH", "option.param_write", "cnc_wrparas.err.EW_NUMBER", "cnc_wrparas.err.EW_ATTRIB",
+    "cnc_wrparas.err.EW_NOOPT",
     "cnc_wrparas.err.EW_PROT",
 )  # fmt: skip
 def test_records_that_are_refused_change_nothing() -> None:

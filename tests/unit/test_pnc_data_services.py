@@ -102,7 +102,7 @@ def test_setpoints_actual_values_and_lag_are_told_apart(lagging: Living) -> None
 @pytest.mark.covers(
     "cpl.cs.WCS", "cpl.cs.BCS", "cpl.cs.ACS", "cpl.cs.MCS", "cpl.MCODS.71", "cpl.MCODS.72", "cpl.MCODS.73"
 )
-@pytest.mark.covers("cpl.MCODS.74", "cpl.SPOS", "cpl.WPOS", "cpl.MPOS", "cpl.MCODS.37")
+@pytest.mark.covers("cpl.MCODS.74", "cpl.SPOS", "cpl.WPOS", "cpl.MPOS", "cpl.APOS", "cpl.MCODS.37")
 def test_each_system_of_coordinates_has_its_shifts(lagging: Living) -> None:
     """The shifts of axes lie between machine and axis coordinates, the length before the workpiece's."""
     x, z = lagging.pnc.axes["X"].setpoint, lagging.pnc.axes["Z"].setpoint
@@ -114,6 +114,9 @@ def test_each_system_of_coordinates_has_its_shifts(lagging: Living) -> None:
     assert (functions["WPOS"]("X"), functions["WPOS"](2)) == pytest.approx(wanted[71])
     assert (functions["MPOS"](1), functions["MPOS"]("Z")) == pytest.approx(wanted[74])
     assert (functions["SPOS"](1), functions["SPOS"]("Z")) == pytest.approx(wanted[74])
+    actual = lagging.pnc.axes["X"].actual, lagging.pnc.axes["Z"].actual
+    assert (functions["APOS"]("X"), functions["APOS"](2)) == pytest.approx(actual)
+    assert abs(actual[0] - x) > 0.1
 
 
 @cases(
@@ -307,7 +310,16 @@ def test_the_kind_of_tool_is_that_of_the_compensation(nine: Living, kind: int) -
 
 
 @pytest.mark.covers(
-    "cpl.MCODS.51", "cpl.MCODS.52", "cpl.MCODS.54", "cpl.MCODS.refresh.S", "cpl.MCODS.refresh"
+    "cpl.MCODS.51",
+    "cpl.MCODS.52",
+    "cpl.MCODS.54",
+    "cpl.MCODS.refresh.S",
+    "cpl.MCODS.refresh",
+    *(
+        f"cpl.MCODS.{number}.elem.{n}"
+        for number, last in ((51, 2), (52, 8), (54, 6))
+        for n in range(1, last + 1)
+    ),
 )
 def test_data_of_blocks_are_new_with_the_next_block(nine: Living) -> None:
     first = nine.read(52, 1, 8)

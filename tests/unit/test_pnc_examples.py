@@ -299,6 +299,47 @@ def test_a_program_waits_until_its_client_answers_and_goes_on_with_its_values(tw
     assert two.pnc.axes["X"].setpoint == 2.75
 
 
+@pytest.mark.covers("cpl.MMC")
+def test_at_most_20_variables_are_sent(two: Living) -> None:
+    sent: list[int] = []
+
+    def client(variables: Sequence[Sent]) -> bool:
+        sent.append(len(variables))
+        return True
+
+    two.pnc.system.clients.client = client
+    some = ",".join(f"V{k}" for k in range(20))
+    assert run(two, f"10 #I%=MMC({some})\n", 50)["#I%"] == 0
+    two.start("10 #A%=MMC(V0)\n20 #B%=1\n", 50)
+    two.write("many", f"10 #C%=MMC({some},V20)\n")
+    two.pnc.select_program("many")
+    two.pnc.cycle_start()
+    two.pnc.advance(5)
+    assert sent == [20, 1]
+    assert two.pnc.status().alarms[0].text.startswith("many:1:")
+
+
+@pytest.mark.covers("cpl.SD.8", "cpl.changed.SD_8", "cpl.err.SDR_AXIS", "cpl.SDR")
+def test_each_channel_has_its_number_and_its_axes(two: Living) -> None:
+    for channel in (2, 1):
+        assert run(two, "10 #A%=SD(8) : #B=SDR(1,2)\n", 50, channel)["#A%"] == channel
+        two.write("wrong", "10 #C=SDR(1,3)\n")
+        two.pnc.select_program("wrong", channel=channel)
+        two.pnc.cycle_start(channel=channel)
+        two.pnc.advance(5)
+        assert "INVALID PARAMETER" in two.pnc.status().alarms[0].text
+        two.pnc.reset(channel=channel)
+        two.pnc.advance(1)
+
+
+@pytest.mark.covers("cpl.MCODS.48", "cpl.MCODS.31", "cpl.MCODS.31.val.4", "cpl.MCODS.31.val.5")
+def test_axes_have_the_mode_of_their_channel(two: Living) -> None:
+    assert run(two, "10 #E%=MCOPS(7,2,4)\n", 50)["#E%"] == 0
+    assert [two.read(31, 1), two.read(31, 2)] == [[5], [4]]
+    assert two.read(48, -1, 5) == [5, 5, 0, 4, 4]
+    assert [two.read(48, 1, 2), two.read(48, 2, 2)] == [[5, 5], [4, 4]]
+
+
 @pytest.mark.covers("cpl.MMC.ret.2", "cpl.MMC")
 def test_an_error_in_the_client_changes_nothing(two: Living) -> None:
     def client(variables: Sequence[Sent]) -> bool:

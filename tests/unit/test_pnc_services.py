@@ -111,14 +111,14 @@ def test_a_part_of_a_program_is_selected_and_machined(
 
 @pytest.mark.covers("cpl.MCOPS.3", "cpl.MCOPS.4", "cpl.MCOPS.6")
 @pytest.mark.covers(
-    "cpl.ncs.10", "cpl.ncs.15", "cpl.ncs.2", "cpl.ncs.8", "cpl.MCODS.32.sav.3", "cpl.MCODS.32"
+    "cpl.ncs.10", "cpl.ncs.11", "cpl.ncs.15", "cpl.ncs.2", "cpl.ncs.8", "cpl.MCODS.32.sav.3", "cpl.MCODS.32"
 )
 def test_a_search_is_refused_where_it_cannot_be(two: Two) -> None:
     two.write("STOPS", "N1 G1 X2=1 F6000\nN2 M0\nN3 X2=2\n")
     assert two.ask('MCOPS(3,2,"N3")', 'MCOPS(4,2,"STOPS")', "MCOPS(6,2)", 'MCOPS(3,2,"N3")') == [10, 0, 0, 2]
     two.after()
     assert two.pnc.run_state(2) is RunState.PROGRAM_STOP
-    assert two.ask('MCOPS(3,2,"N3")', 'MCOPS(3,3,"N3")') == [15, 1]
+    assert two.ask('MCOPS(3,2,"N3")', 'MCOPS(3,3,"N3")', 'MCOPS(4,2,"PART")') == [15, 1, 11]
     assert two.ask("MCOPS(6,2)") == [0]
     two.after()
     assert two.x2() == 2

@@ -487,11 +487,11 @@ def test_system_data_of_functions_that_no_program_can_program_are_0(cell: Cell, 
 def test_a_program_asks_its_own_control(cell: Cell) -> None:
     blocks = (
         "10 DIM BUF%(2)\n20 VERSION=0\nN25 G1 X12.5 Y3 F640\n26 WAIT\n30 ERR_VAR% = MCODS(32,1,VERSION,BUF%,2)\n"
-        "40 DIM P!(4) : V2=0 : E%=MCODS(1,-1,V2,P!,4)\n50 ERR_VAR2% = MCOPS(6,9)\n60 E3%=MCOPS(6,1)"
+        "40 DIM P!(4) : V2=0 : E%=MCODS(1,-1,V2,P!,4)\n50 ERR_VAR2% = MCOPS(6,9)\n60 E3%=MCOPS(6,1)\n"
+        "70 V2=0 : E4%=MCODS(32,7,V2,BUF%,2) : E5%=MCODS(17,1,V2,BUF%,2)"
     )
-    assert cell.values(blocks, "ERR_VAR%", "BUF%(1)", "BUF%(2)", "P!(1)", "P!(2)", "ERR_VAR2%", "E3%") == [
-        0, 3, 1, 12.5, 3, 1, 9,
-    ]  # fmt: skip
+    asked = "ERR_VAR%", "BUF%(1)", "BUF%(2)", "P!(1)", "P!(2)", "ERR_VAR2%", "E3%", "E4%", "E5%"
+    assert cell.values(blocks, *asked) == [0, 3, 1, 12.5, 3, 1, 9, 1, 102]
     names = cell.report(
         "1 DIM A$(80) : V=0\n2 E%=MCODS(33,-1,V,A$,80) : DIM B$(2) : B$=MID$(A$,28,1) : PRN#(1,B$)"
     )
