@@ -146,6 +146,7 @@ def test_two_sessions_have_handles_of_their_own() -> None:
 
 @covers("example.cnc_actf", "cnc_actf")
 @pytest.mark.covers("fanuc.ODBACT.data")
+@pytest.mark.covers("fanuc.struct.ODBACT")
 def test_example_actual_feed() -> None:
     control, handle = attached()
     registered(control, O1234="\nN10 G98 F1200\nN20 G1 X10. Z200.\nM30\n")
@@ -176,6 +177,7 @@ def test_actual_feed_in_inch_has_two_decimals() -> None:
     "example.cnc_absolute", "cnc_absolute", "enum.axis.ALL_AXES", "enum.axis.1..m", "concept.decimal_point"
 )
 @pytest.mark.covers("fanuc.ODBAXIS.data", "fanuc.ODBAXIS.type")
+@pytest.mark.covers("fanuc.struct.ODBAXIS")
 def test_example_absolute() -> None:
     control, handle = attached()
     moved(control, "G0 X120.005 Y-50.119 Z0.08")
@@ -217,6 +219,7 @@ def test_example_distance_is_twice_the_real_one() -> None:
 
 @covers("example.cnc_wrrelpos", "cnc_wrrelpos", "concept.position_contents")
 @pytest.mark.covers("fanuc.IDBWRR.data", "fanuc.IDBWRR.type")
+@pytest.mark.covers("fanuc.struct.IDBWRR")
 def test_example_relative_preset_to_the_origin() -> None:
     control, handle = attached()
     moved(control, "G0 X33.21 Y-7.5 Z3.")
@@ -351,6 +354,15 @@ def test_nothing_is_delayed_by_acceleration() -> None:
     [pytest.param(n, marks=covers(f"cnc_{n}.err.EW_LENGTH", f"cnc_{n}.err.EW_ATTRIB"), id=n) for n in READS],
 )
 @covers("concept.length_argument", "concept.axis_number")
+@pytest.mark.covers(
+    "fanuc.cnc_absolute",
+    "fanuc.cnc_accdecdly",
+    "fanuc.cnc_distance",
+    "fanuc.cnc_machine",
+    "fanuc.cnc_relative",
+    "fanuc.cnc_skip",
+    "fanuc.cnc_srvdelay",
+)
 def test_lengths_and_axes_of_position_reads(name: str) -> None:
     _, handle = attached(axes=4)
     assert read(name, handle, 1, 7)[0] == EW.EW_LENGTH
@@ -406,6 +418,7 @@ def test_reads_need_no_option() -> None:
     "fanuc.ODBDY.pos.oaxis.machine",
     "fanuc.ODBDY.pos.oaxis.relative",
 )
+@pytest.mark.covers("fanuc.struct.ODBDY")
 def test_the_dynamic_data_are_those_of_the_single_functions() -> None:
     control, handle = attached(axes=4, rotary=(4,))
     registered(
@@ -460,6 +473,7 @@ LAST = {4: 599, 5: 749, 6: 499, 8: 399, 10: 5999, 15: 1999}
     "bit",
     [pytest.param(bit, marks=covers(f"ODBDY.alarm.bit{bit}"), id=str(bit)) for bit in range(16)],
 )
+@pytest.mark.covers("fanuc.ODBDY.alarm", "fanuc.struct.ODBDY")
 def test_bits_of_the_alarm_status(bit: int) -> None:
     control, handle = attached()
 

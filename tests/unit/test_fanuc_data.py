@@ -109,6 +109,7 @@ def test_unit_and_range_of_tool_offsets(increment: str, limit: int, mm: float, i
     "fanuc.ODBTLINF.ofs_type",
     "fanuc.ODBTLINF.use_no",
 )
+@pytest.mark.covers("fanuc.struct.IODBTO", "fanuc.struct.ODBTLINF")
 def test_examples_of_tool_offset_ranges() -> None:
     _, handle = attached()
     values = [37 * k - 1500 for k in range(1, 100)]
@@ -252,6 +253,7 @@ def test_parameters_of_axes(kind: str) -> None:
 
 @covers("cnc_rdparam", "example.cnc_rdparam", "ncparam.1020")
 @pytest.mark.covers("fanuc.IODBPSD.u.cdatas")
+@pytest.mark.covers("fanuc.struct.IODBPSD")
 def test_example_axis_names() -> None:
     _, handle = attached(axes=4, rotary=(3,))
     code, data = fwlib.cnc_rdparam(handle, 1020, ALL_AXES, 4 + 1 * fwlib.MAX_AXIS)
@@ -302,6 +304,7 @@ def test_example_stroke_limits_act_on_the_machine() -> None:
     "option.param_write", "ODBPARAIF.prm_type.bit5", "ODBPARAIF.prm_type.bit7",
 )  # fmt: skip
 @pytest.mark.covers("fanuc.cnc_wrparam")
+@pytest.mark.covers("fanuc.struct.ODBPARAIF")
 def test_parameters_that_are_refused_change_nothing() -> None:
     control, handle = attached(options=("pmc_axis",))
     before = {key: control.parameters.value(*key) for key in control.parameters._values}
@@ -352,6 +355,7 @@ def test_a_bit_is_changed_by_writing_its_byte() -> None:
 @pytest.mark.covers(
     "fanuc.cnc_delete.err.EW_BUSY", "fanuc.cnc_dwnstart", "fanuc.cnc_search.err.EW_BUSY", "fanuc.cnc_wrparam"
 )
+@pytest.mark.covers("fanuc.struct.ODBPARAIF")
 def test_some_parameters_need_the_power_switched_off() -> None:
     control, handle = attached(axes=2)
     registered(control, O12="\nM30\n")
@@ -530,6 +534,7 @@ def test_records_that_are_refused_change_nothing() -> None:
     "fanuc.ODBPARAIF.prev_no",
     "fanuc.ODBPARAIF.next_no",
 )
+@pytest.mark.covers("fanuc.struct.ODBPARAIF")
 def test_walking_through_the_parameters() -> None:
     _, handle = attached()
     rows = parameter_rows()
@@ -575,6 +580,7 @@ BITS: dict[str, tuple[int, int, Iterable[int], Iterable[int]]] = {
 @pytest.mark.parametrize(
     "name", [pytest.param(n, marks=covers(f"ODBPARAIF.prm_type.{n}"), id=n) for n in BITS]
 )
+@pytest.mark.covers("fanuc.struct.ODBPARAIF")
 def test_attribute_bits(name: str) -> None:
     shift, mask, have, have_not = BITS[name]
     for number in have:
@@ -587,6 +593,7 @@ def test_attribute_bits(name: str) -> None:
 
 
 @covers("ODBPARAIF.prm_type.bit0_1")
+@pytest.mark.covers("fanuc.struct.ODBPARAIF")
 def test_type_attribute() -> None:
     assert [attributes(number) & 3 for number in (3201, 6710, 1410, 6711, 1006, 1020, 1825, 1320)] == [
         0,

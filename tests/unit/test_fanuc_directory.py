@@ -115,6 +115,7 @@ def test_directory_requests_that_are_refused() -> None:
     "fanuc.ODBNC.u.bin.used_mem",
     "fanuc.ODBNC.u.bin.unused_mem",
 )
+@pytest.mark.covers("fanuc.struct.ODBNC")
 def test_program_information() -> None:
     _, handle = _directory()
     code, info = fwlib.cnc_rdproginfo(handle, 0, 12)
@@ -140,6 +141,7 @@ def test_program_information() -> None:
 
 @covers("example.cnc_rdprgnum", "cnc_rdprgnum", "concept.subprogram_numbers")
 @pytest.mark.covers("fanuc.ODBPRO.data", "fanuc.ODBPRO.mdata")
+@pytest.mark.covers("fanuc.struct.ODBPRO")
 def test_example_program_numbers_in_a_subprogram() -> None:
     control, handle = attached()
     registered(
@@ -256,6 +258,7 @@ def test_mdi_programs_that_are_refused() -> None:
 @pytest.mark.covers(
     "fanuc.ODBMDIP.mdiprog", "fanuc.ODBMDIP.mdipntr", "fanuc.ODBMDIP.crntprog", "fanuc.ODBMDIP.crntpntr"
 )
+@pytest.mark.covers("fanuc.struct.ODBMDIP")
 def test_mdi_pointers() -> None:
     control, handle = attached(axes=1)
     registered(control, O77="\nG4P80\nM99\n")

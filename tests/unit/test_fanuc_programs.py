@@ -131,6 +131,7 @@ def test_a_piece_has_1_to_256_characters() -> None:
         "\nO\nM30\n%",
     ],
 )
+@pytest.mark.covers("fanuc.cnc_download", "fanuc.cnc_dwnend")
 def test_streams_that_are_refused(stream: str) -> None:
     control, handle = attached()
     registered(control, O7="\nM30\n", O55="\nM30\n")
@@ -186,6 +187,7 @@ def test_parameters_of_registration() -> None:
 @pytest.mark.covers("fanuc.EW_OVRFLOW")
 @pytest.mark.covers("fanuc.cnc_delete")
 @covers("cnc_download.err.EW_OVRFLOW", "cnc_dwnend.err.EW_OVRFLOW", "concept.memory_accounting")
+@pytest.mark.covers("fanuc.cnc_download", "fanuc.cnc_dwnend")
 def test_a_full_memory() -> None:
     control, handle = attached(characters=60, most_programs=2)
     assert sent(handle, FORMAT) == (OK, OK)
@@ -230,6 +232,7 @@ def test_a_download_never_answers_that_a_buffer_is_full() -> None:
 @covers("example.cnc_upload_format", "cnc_upstart", "cnc_upload", "cnc_upend", "format.upload")
 @covers("concept.no_nul_termination")
 @pytest.mark.covers("fanuc.ODBUP.data")
+@pytest.mark.covers("fanuc.struct.ODBUP")
 def test_example_upload_in_pieces() -> None:
     _, handle = attached()
     assert sent(handle, FORMAT) == (OK, OK)
@@ -445,6 +448,7 @@ MATRIX: list[tuple[Callable[[PowerMate, int], None], dict[str, EW]]] = [
 )  # fmt: skip
 @pytest.mark.parametrize("call", CALLS)
 @pytest.mark.parametrize(("state", "answers"), [pytest.param(*each, id=each[0].__name__) for each in MATRIX])
+@pytest.mark.covers("fanuc.cnc_delall", "fanuc.cnc_delete", "fanuc.cnc_dwnstart", "fanuc.cnc_search")
 def test_refusal_matrix(state: Callable[[PowerMate, int], None], answers: dict[str, EW], call: str) -> None:
     control, handle = _memory()
     control.select_mode("EDIT")
@@ -489,6 +493,7 @@ def test_in_other_modes_than_edit_and_mem_the_op_signal_does_not_matter() -> Non
     ],
 )
 @pytest.mark.covers("fanuc.cnc_delete")
+@pytest.mark.covers("fanuc.cnc_download", "fanuc.cnc_dwnend")
 def test_parameters_protect_programs(
     parameter: int, value: int, guarded: tuple[int, int], free: tuple[int, int]
 ) -> None:

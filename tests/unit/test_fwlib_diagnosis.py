@@ -85,6 +85,7 @@ def test_a_diagnosis_value_of_each_kind(
 @pytest.mark.covers("fanuc.diag.axis.-1")
 @pytest.mark.covers("fanuc.ODBDGN.type")
 @pytest.mark.covers("fanuc.cnc_diagnoss.err.EW_LENGTH")
+@pytest.mark.covers("fanuc.ODBDGN")
 def test_all_axes_at_once() -> None:
     control, library, handle = moving()
     control.advance(8000)
@@ -280,6 +281,7 @@ def test_servo_values_of_a_moving_machine() -> None:
     "fanuc.cnc_rdopmsg.type.0", "fanuc.OPMSG.type.0",
 )  # fmt: skip
 @pytest.mark.covers("fanuc.OPMSG.datano", "fanuc.OPMSG.type", "fanuc.OPMSG.char_num", "fanuc.OPMSG.data")
+@pytest.mark.covers("fanuc.OPMSG")
 def test_the_manuals_program_prints_the_message() -> None:
     control = PowerMate()
     library, handle = at(control)

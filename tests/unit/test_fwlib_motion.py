@@ -42,6 +42,7 @@ def buffers(library: Any, handle: int) -> list[list[int]]:
 )
 @pytest.mark.covers("fanuc.ODBPOS.idata", "fanuc.ODBPOS.ldata")
 @pytest.mark.covers("fanuc.cnc_absolute", "fanuc.cnc_finstate")
+@pytest.mark.covers("fanuc.ODBPOS")
 def test_absolute_motion_of_the_manual() -> None:
     control = PowerMate()
     control.programs.memory.create("O0004", b"O0004\nG0 X10. Y10.\n")
@@ -102,6 +103,7 @@ def test_reference_return_of_the_manual() -> None:
     ],
 )
 @pytest.mark.covers("fanuc.cnc_incpoint")
+@pytest.mark.covers("fanuc.ODBPOS")
 def test_units_of_positions(more: dict[str, Any], value: int, axis: str, unit: float) -> None:
     control = PowerMate(**more)
     library, handle = at(control)
@@ -166,6 +168,9 @@ def test_setting_a_coordinate() -> None:
 )  # fmt: skip
 @pytest.mark.covers("fanuc.ODBEXEC.cdata", "fanuc.ODBFIN.cdata")
 @pytest.mark.covers("fanuc.cnc_incpoint")
+@pytest.mark.covers(
+    "fanuc.ODBEXEC", "fanuc.ODBFIN", "fanuc.cnc_abspoint", "fanuc.cnc_coordre", "fanuc.cnc_dwell"
+)
 def test_two_buffers_and_a_completion_flag_per_path(path: int) -> None:
     control = PowerMate()
     library, handle = at(control)
@@ -422,6 +427,7 @@ def test_start_hold_and_reset() -> None:
 
 @pytest.mark.covers("fanuc.cnc_opdi.number.1", "fanuc.cnc_opdi.sig1.cdata.0", "fanuc.cnc_opdi.sig1.cdata.1")
 @pytest.mark.covers("fanuc.cnc_statinfo")
+@pytest.mark.covers("fanuc.cnc_opdi")
 def test_emergency_stop_is_active_low() -> None:
     control, library, handle = started()
     give(library, handle, 1, 0)
@@ -438,6 +444,7 @@ def test_emergency_stop_is_active_low() -> None:
     ],
 )
 @pytest.mark.covers("fanuc.cnc_opdi.number.9")
+@pytest.mark.covers("fanuc.cnc_opdi")
 def test_mode_select(value: int, mode: str) -> None:
     control = PowerMate()
     library, handle = at(control)
@@ -447,6 +454,7 @@ def test_mode_select(value: int, mode: str) -> None:
 
 
 @pytest.mark.covers("fanuc.cnc_opdi.number.10", "fanuc.cnc_opdi.sig10.255", "fanuc.cnc_opdi.sig10.range")
+@pytest.mark.covers("fanuc.cnc_opdi")
 def test_feed_override_is_the_percentage_itself() -> None:
     control, library, handle = started()
     seen = []
@@ -462,6 +470,7 @@ def test_feed_override_is_the_percentage_itself() -> None:
 @pytest.mark.covers(
     "fanuc.cnc_opdi.number.15", "fanuc.cnc_opdi.sig15.cdata.1", "fanuc.cnc_opdi.sig15.cdata.0"
 )
+@pytest.mark.covers("fanuc.cnc_opdi")
 def test_single_block() -> None:
     control, library, handle = started("G1 X5. F600\nY2.\nZ3.")
     give(library, handle, 15, 1)
@@ -480,6 +489,7 @@ def test_single_block() -> None:
     "fanuc.cnc_opdi.sig7.cdata.1",
 )  # fmt: skip
 @pytest.mark.covers("fanuc.ODBOPDI.axis")
+@pytest.mark.covers("fanuc.ODBOPDI", "fanuc.cnc_opdi")
 def test_jog_feed_of_one_axis_and_of_all() -> None:
     control = PowerMate()
     library, handle = at(control)
@@ -507,6 +517,7 @@ def test_jog_feed_of_one_axis_and_of_all() -> None:
     [pytest.param(bit, marks=pytest.mark.covers(f"fanuc.cnc_opdi.sig4.cdata.bit{bit}")) for bit in range(6)],
 )
 @pytest.mark.covers("fanuc.cnc_incpoint")
+@pytest.mark.covers("fanuc.cnc_opdi")
 def test_an_axis_whose_servo_is_off_does_not_move(bit: int) -> None:
     control = PowerMate(axes=6)
     library, handle = at(control)
@@ -526,6 +537,7 @@ def test_an_axis_whose_servo_is_off_does_not_move(bit: int) -> None:
     [pytest.param(bit, marks=pytest.mark.covers(f"fanuc.cnc_opdi.sig12.cdata.bit{bit}")) for bit in range(6)],
 )
 @pytest.mark.covers("fanuc.cnc_diagnoss")
+@pytest.mark.covers("fanuc.cnc_opdi")
 def test_torque_mode_of_an_axis(bit: int) -> None:
     control = PowerMate(axes=6)
     library, handle = at(control)
@@ -539,6 +551,7 @@ def test_torque_mode_of_an_axis(bit: int) -> None:
 @pytest.mark.covers("fanuc.cnc_rdcurrent")
 @pytest.mark.covers("fanuc.cnc_opdi.number.13", "fanuc.cnc_opdi.sig13.axis", "fanuc.cnc_opdi.sig13.formula")
 @pytest.mark.covers("fanuc.cnc_diagnoss")
+@pytest.mark.covers("fanuc.cnc_opdi")
 def test_torque_override_limits_the_current() -> None:
     control, library, handle = started("G0 X900. Y900. Z900.")
     control.advance(200)
@@ -571,6 +584,7 @@ def test_torque_override_limits_the_current() -> None:
         (15, 3, 0, "EW_DATA"),
     ],
 )  # fmt: skip
+@pytest.mark.covers("fanuc.cnc_opdi")
 def test_an_operation_signal_is_refused(number: int, value: int, axis: int, code: str) -> None:
     control, library, handle = started()
     before = control.pmc.read("G", 0, 255)
@@ -583,6 +597,7 @@ def test_an_operation_signal_is_refused(number: int, value: int, axis: int, code
     "fanuc.cnc_opdi.err.EW_BUSY", "fanuc.cnc_exebufstat.err.EW_BUSY", "fanuc.cnc_finstate.err.EW_BUSY",
     "fanuc.cnc_setfin.err.EW_BUSY",
 )  # fmt: skip
+@pytest.mark.covers("fanuc.cnc_exebufstat", "fanuc.cnc_opdi")
 def test_a_busy_control_is_asked_again() -> None:
     control, library, handle = started()
     library.cnc_wropnlgnrl(handle, fwlib.IODBGNRL(type=1, sgnal=1))

@@ -155,6 +155,7 @@ def test_protected_addresses_are_not_written(kind: int, first: int, count: int) 
 )
 @pytest.mark.covers("fanuc.pmc_wrpmcrng", "fanuc.pmc_rdpmcrng", "fanuc.pmc.adr_type.9")
 @pytest.mark.covers("fanuc.IODBPMC.type_a", "fanuc.IODBPMC.datano_s", "fanuc.IODBPMC.datano_e")
+@pytest.mark.covers("fanuc.IODBPMC")
 def test_items_of_a_type(data_type: int, last: int, length: int, member: str, values: list[int]) -> None:
     control = PowerMate()
     library, handle = at(control)
@@ -219,6 +220,7 @@ def test_writing_is_refused_and_writes_nothing(head: tuple[int, ...], length: in
 
 @pytest.mark.covers("fanuc.pmc_rdpmcrng")
 @pytest.mark.covers("fanuc.EW_NOPMC", "fanuc.pmc_rdpmcrng.err.EW_NOPMC", "fanuc.pmc_wrpmcrng.err.EW_NOPMC")
+@pytest.mark.covers("fanuc.pmc_wrpmcrng")
 def test_a_control_without_a_pmc() -> None:
     library, handle = at(PowerMate(options=("custom_macro",)))
     assert library.pmc_rdpmcrng(handle, D, 0, 3, 3, 9)[0] is EW.EW_NOPMC
@@ -230,6 +232,7 @@ def test_a_control_without_a_pmc() -> None:
     "fanuc.ODBPMCINF.adr_attr.bit7", "fanuc.ODBPMCINF.adr_attr.bits6_0",
 )  # fmt: skip
 @pytest.mark.covers("fanuc.ODBPMCINF.datano", "fanuc.ODBPMCINF.info.adr_attr")
+@pytest.mark.covers("fanuc.ODBPMCINF")
 def test_which_addresses_there_are() -> None:
     library, handle = at(PowerMate())
     code, every = library.pmc_rdpmcinfo(handle, -1)

@@ -49,6 +49,7 @@ def running(text: str, cycles: int = 5, **more: Any) -> PowerMate:
     "fanuc.ODBSYS.version",
     "fanuc.ODBSYS.axes",
 )
+@pytest.mark.covers("fanuc.ODBSYS")
 def test_system_of_the_manuals_sample() -> None:
     library, handle = at(PowerMate(axes=4))
     code, system = library.cnc_sysinfo(handle)
@@ -58,6 +59,7 @@ def test_system_of_the_manuals_sample() -> None:
 
 @pytest.mark.covers("fanuc.cnc_sysinfo")
 @pytest.mark.covers("fanuc.ODBSYS.mt_type.D")
+@pytest.mark.covers("fanuc.ODBSYS", "fanuc.ODBSYS.mt_type")
 def test_system_of_a_power_mate_d() -> None:
     library, handle = at(PowerMate(model="D", axes=1))
     _, system = library.cnc_sysinfo(handle)
@@ -110,6 +112,13 @@ MODULES: dict[str, tuple[str, dict[int, Any]]] = {
 @pytest.mark.covers(
     "fanuc.ODBSYSC.hdiio", "fanuc.ODBSYSC.posmin", "fanuc.ODBSYSC.sicmin", "fanuc.ODBSYSC.srmmin"
 )
+@pytest.mark.covers(
+    "fanuc.ODBSYSC",
+    "fanuc.ODBSYSC.drmmin",
+    "fanuc.ODBSYSC.frmmin",
+    "fanuc.ODBSYSC.pmcmin",
+    "fanuc.ODBSYSC.submin",
+)
 def test_a_module_has_its_code(element: str, argument: str, module: Any, value: int) -> None:
     absent = value != -1  # the others: not there while it is, there while it is not
     others = {
@@ -139,6 +148,7 @@ def test_a_module_has_its_code(element: str, argument: str, module: Any, value: 
 )
 @pytest.mark.covers("fanuc.ODBSYSC.sv1min", "fanuc.ODBSYSC.sv3min", "fanuc.ODBSYSC.sv5min")
 @pytest.mark.covers("fanuc.cnc_sysconfig")
+@pytest.mark.covers("fanuc.ODBSYSC")
 def test_servo_modules_are_those_of_the_axes(axes: int, modules: list[int]) -> None:
     library, handle = at(PowerMate(axes=axes))
     system = library.cnc_sysconfig(handle)[1]
@@ -155,6 +165,7 @@ def test_servo_modules_are_those_of_the_axes(axes: int, modules: list[int]) -> N
     "fanuc.ODBSYSC.lad_soft",
     "fanuc.ODBSYSC.mcr_soft",
 )
+@pytest.mark.covers("fanuc.ODBSYSC")
 def test_software_of_the_control() -> None:
     control = PowerMate()
     library, handle = at(control)
@@ -185,6 +196,7 @@ def test_software_of_the_control() -> None:
     ],
 )  # fmt: skip
 @pytest.mark.covers("fanuc.ODBST.aut")
+@pytest.mark.covers("fanuc.ODBST")
 def test_mode(mode: str, value: int) -> None:
     control = PowerMate()
     control.select_mode(mode)
@@ -195,6 +207,7 @@ def test_mode(mode: str, value: int) -> None:
 
 @pytest.mark.covers("fanuc.ODBST.aut.2")
 @pytest.mark.covers("fanuc.cnc_statinfo")
+@pytest.mark.covers("fanuc.ODBST", "fanuc.ODBST.aut")
 def test_mode_signals_that_no_mode_has_select_none() -> None:
     control = PowerMate()
     control.signals.give(43, 2)
@@ -256,6 +269,9 @@ STATES: dict[str, tuple[Callable[[], PowerMate], int, int, int]] = {
 @pytest.mark.covers(
     "fanuc.ODBST.emergency.0", "fanuc.ODBST.alarm.0", "fanuc.ODBST.edit.0", "fanuc.ODBST.aut.1"
 )
+@pytest.mark.covers(
+    "fanuc.ODBST", "fanuc.ODBST.alarm", "fanuc.ODBST.aut", "fanuc.ODBST.edit", "fanuc.ODBST.emergency"
+)
 def test_state_of_a_program(setup: Callable[[], PowerMate], run: int, motion: int, mstb: int) -> None:
     library, handle = at(setup())
     state = library.cnc_statinfo(handle)[1]
@@ -277,6 +293,7 @@ def emergency_of(control: PowerMate) -> int:
 
 
 @pytest.mark.covers("fanuc.ODBST.emergency.0", "fanuc.ODBST.emergency.1")
+@pytest.mark.covers("fanuc.ODBST", "fanuc.ODBST.emergency")
 def test_emergency_stop_and_its_release() -> None:
     control = PowerMate()
     control.emergency_stop()
@@ -286,6 +303,7 @@ def test_emergency_stop_and_its_release() -> None:
 
 
 @pytest.mark.covers("fanuc.ODBST.emergency.2")
+@pytest.mark.covers("fanuc.ODBST", "fanuc.ODBST.emergency")
 def test_a_reset_signal_shows_as_reset() -> None:
     control = PowerMate()
     control.signals.give_bits(8, 0x80, 0x80)
@@ -296,6 +314,7 @@ def test_a_reset_signal_shows_as_reset() -> None:
 
 @pytest.mark.covers("fanuc.ODBST.alarm.0", "fanuc.ODBST.alarm.1", "fanuc.ODBST.alarm.2", "fanuc.ODBST.alarm")
 @pytest.mark.covers("fanuc.cnc_statinfo")
+@pytest.mark.covers("fanuc.ODBST")
 def test_alarm_and_low_battery() -> None:
     control = PowerMate()
     library, handle = at(control)
@@ -312,6 +331,7 @@ def test_alarm_and_low_battery() -> None:
 @pytest.mark.covers("fanuc.cnc_upend")
 @pytest.mark.covers("fanuc.ODBST.edit.3")
 @pytest.mark.covers("fanuc.cnc_statinfo", "fanuc.cnc_upstart")
+@pytest.mark.covers("fanuc.ODBST", "fanuc.ODBST.edit")
 def test_a_program_that_goes_out_shows_as_output() -> None:
     control = PowerMate()
     library, handle = at(control)
@@ -331,6 +351,7 @@ def test_a_program_that_goes_out_shows_as_output() -> None:
     "fanuc.ODBST.edit.6",
 )
 @pytest.mark.covers("fanuc.cnc_statinfo")
+@pytest.mark.covers("fanuc.ODBST")
 def test_edit_state() -> None:
     control = PowerMate()
     library, handle = at(control)
@@ -387,6 +408,7 @@ def signed(bits: int) -> int:
     ],
 )  # fmt: skip
 @pytest.mark.covers("fanuc.cnc_rdalminfo")
+@pytest.mark.covers("fanuc.ODBALM", "fanuc.ODBALM.data")
 def test_an_alarm_sets_the_bit_of_its_group_and_is_found_by_it(bit: int, number: int) -> None:
     control = PowerMate()
     library, handle = at(control)
@@ -410,6 +432,7 @@ def test_an_alarm_sets_the_bit_of_its_group_and_is_found_by_it(bit: int, number:
     *(f"fanuc.cnc_rdalminfo.alm_type.bit{bit}" for bit in UNUSED),
     "fanuc.cnc_rdalminfo.err.EW_ATTRIB",
 )
+@pytest.mark.covers("fanuc.ODBALM", "fanuc.ODBALM.data")
 def test_unused_bits_are_never_set_and_select_nothing() -> None:
     control = PowerMate()
     library, handle = at(control)
@@ -456,6 +479,7 @@ def test_the_manuals_program_prints_alarms(numbers: tuple[int, ...], printed: li
     "fanuc.ALMINFO.alm.alm_msg",
     "fanuc.ALMINFO.data_end",
 )
+@pytest.mark.covers("fanuc.ALMINFO")
 def test_alarms_with_axis_and_text() -> None:
     control = PowerMate()
     library, handle = at(control)

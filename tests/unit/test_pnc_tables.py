@@ -516,6 +516,7 @@ NOT_IN_USE = {
     ("row", "data"),
     [pytest.param(*each, marks=pytest.mark.covers(f"cpl.{each[0]}")) for each in NOT_IN_USE.items()],
 )
+@pytest.mark.covers("cpl.SD", "cpl.SDR")
 def test_system_data_that_are_not_in_use_stop_a_program(living: Living, row: str, data: str) -> None:
     assert stopped(living, f"A={data}") == "INVALID PARAMETER"
 
