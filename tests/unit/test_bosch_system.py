@@ -135,6 +135,7 @@ RANGES = [(1, "INPUT"), (2, "OUTPUT"), (3, "MARKER"), (5, "DATA_BUFFER"), (6, "D
     ("kind", "name"),
     [pytest.param(*row, marks=pytest.mark.covers(f"cpl.PLC.type.{row[0]}")) for row in RANGES],
 )
+@pytest.mark.covers("cpl.PLC")
 def test_ranges_of_the_plc_are_read_by_byte_address(kind: int, name: str) -> None:
     control = Control()
     control.plc.ranges = {each: bytearray(range(100, 120)) for each in PlcRange}
@@ -171,6 +172,7 @@ def test_byte_10_of_the_inputs_is_read_with_an_empty_module() -> None:
 
 
 @pytest.mark.covers("cpl.PLC.type.7", "cpl.PLC.type.8")
+@pytest.mark.covers("cpl.PLC")
 def test_timers_give_ms_and_counters_their_value_whatever_the_size() -> None:
     control = Control()
     control.plc.timers_ms[3] = 70_250
@@ -252,6 +254,7 @@ def test_errors_come_in_the_order_of_their_time() -> None:
 @pytest.mark.parametrize(
     "category", [pytest.param(each, marks=pytest.mark.covers(f"cpl.GETERR.cat.{each}")) for each in range(11)]
 )
+@pytest.mark.covers("cpl.GETERR")
 def test_errors_are_chosen_by_category(category: int) -> None:
     found = ErrorList(2)
     for each in range(11):
@@ -293,6 +296,7 @@ def test_what_cannot_be_asked_gives_minus_1() -> None:
         for each in (*range(3, 8), *range(9, 49))
     ],
 )
+@pytest.mark.covers("cpl.TDA")
 def test_numbers_of_the_tool_database_are_raw(field: int) -> None:
     control = Control()
     ran = Ran(
@@ -307,6 +311,7 @@ def test_numbers_of_the_tool_database_are_raw(field: int) -> None:
 @pytest.mark.parametrize(
     "field", [pytest.param(each, marks=pytest.mark.covers(f"cpl.TDA.field.{each}")) for each in (8, 49)]
 )
+@pytest.mark.covers("cpl.TDA")
 def test_texts_of_the_tool_database_have_31_characters_at_most(field: int) -> None:
     control = Control()
     text = "CENTRE DRILL 6.3 MM, LEFT HAND."
@@ -322,6 +327,7 @@ def test_texts_of_the_tool_database_have_31_characters_at_most(field: int) -> No
 
 @pytest.mark.covers("cpl.TDA.field.1", "cpl.TDA.field.2")
 @pytest.mark.parametrize("field", [1, 2])
+@pytest.mark.covers("cpl.TDA")
 def test_sector_and_place_cannot_be_accessed(field: int) -> None:
     control = Control()
     assert "no access" in str(failure(control, f"A%=TDA(1,1,{field})"))

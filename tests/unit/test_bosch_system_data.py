@@ -172,6 +172,7 @@ MEMBERS = {
         for each in range(2, 49)
     ],
 )
+@pytest.mark.covers("cpl.SD")
 def test_g_functions_are_told_by_the_groups_of_the_cc_series(group: int) -> None:
     system = data()
     assert (system.sd(1, group, 1), system.sd(1, group, 2)) == GROUPS.get(group, (-1, -1))
@@ -183,6 +184,7 @@ def test_g_functions_are_told_by_the_groups_of_the_cc_series(group: int) -> None
 
 
 @pytest.mark.covers("cpl.SD.group.1", "cpl.SD.1.i.2")
+@pytest.mark.covers("cpl.SD")
 def test_group_1_tells_functions_of_one_block_in_the_next_one_only() -> None:
     system = data()
     assert system.sd(1, 1, 2) == 4
@@ -193,6 +195,7 @@ def test_group_1_tells_functions_of_one_block_in_the_next_one_only() -> None:
 
 
 @pytest.mark.covers("cpl.SD.5.1.1")
+@pytest.mark.covers("cpl.SD")
 def test_the_active_feed_is_rounded_up_and_whole_with_g63() -> None:
     system = data()
     assert system.sd(5, 1, 1) == 831  # 830.83
@@ -204,6 +207,7 @@ def test_the_active_feed_is_rounded_up_and_whole_with_g63() -> None:
 
 
 @pytest.mark.covers("cpl.SD.9")
+@pytest.mark.covers("cpl.SD")
 def test_a_probe_that_did_not_switch_gives_1() -> None:
     system = data()
     system.probe_missing = True
@@ -214,6 +218,7 @@ def test_a_probe_that_did_not_switch_gives_1() -> None:
     "value",
     [pytest.param(each, marks=pytest.mark.covers(f"cpl.SD.12.val.{each}")) for each in (3, 4, 0, -1, 19)],
 )
+@pytest.mark.covers("cpl.SD")
 def test_senses_of_rotation(value: int) -> None:
     system = data()
     senses = {} if value == -1 else {1: value}
@@ -225,6 +230,7 @@ def test_senses_of_rotation(value: int) -> None:
     "value",
     [pytest.param(each, marks=pytest.mark.covers(f"cpl.SD.13.val.{each}")) for each in (0, 1, 2, 10, 11)],
 )
+@pytest.mark.covers("cpl.SD", "cpl.SD.13")
 def test_the_machining_mode_is_told(value: int) -> None:
     system = data()
     system.machining_mode = value
@@ -232,6 +238,7 @@ def test_the_machining_mode_is_told(value: int) -> None:
 
 
 @pytest.mark.covers("cpl.SD.2.3", "cpl.SD.2.4", "cpl.SD.5.3.1", "cpl.SD.5.4.2", "cpl.SD.5.3.3", "cpl.SD.15")
+@pytest.mark.covers("cpl.SD")
 def test_spindles_that_are_not_there_give_0() -> None:
     system = SystemData(1, test_without_motion=True)
     assert [system.sd(2, 3), system.sd(2, 4), system.sd(5, 3, 1), system.sd(5, 4, 2), system.sd(5, 3, 3)] == [

@@ -85,6 +85,7 @@ def test_each_g_address_is_an_entry_of_its_own(code: int) -> None:
     "table", [pytest.param(each, marks=pytest.mark.covers(f"cpl.FXC.table.{each}")) for each in (1, 2, 3)]
 )
 @pytest.mark.covers("cpl.ex.1769")
+@pytest.mark.covers("cpl.FXC")
 def test_database_tables_have_numbers(table: int) -> None:
     control = Control()
     control.run(f"FXC(2,54,{table})=80")
@@ -108,6 +109,7 @@ def test_a_minus_adds_to_what_is_there() -> None:
 
 
 @pytest.mark.covers("cpl.FXC.unit.0", "cpl.FXC.unit.2", "cpl.ex.1772")
+@pytest.mark.covers("cpl.FXC")
 def test_values_are_converted_between_the_table_and_the_unit_that_is_given() -> None:
     control = Control()
     control.run('FXC("Z",54,TAB$,2)=10/25.4', "FXC(1,55,TAB$,0)=7.5", 'FXC("U_CH1",54,TAB$,2)=30')
@@ -126,6 +128,7 @@ def test_values_are_converted_between_the_table_and_the_unit_that_is_given() -> 
     "code", [pytest.param(each, marks=pytest.mark.covers(f"cpl.FXC.G.{each}")) for each in (160, 260, 360)]
 )
 @pytest.mark.covers("cpl.FXC.table.0", "cpl.ex.1773", "cpl.err.FXC_FOREIGN")
+@pytest.mark.covers("cpl.FXC")
 def test_external_shifts_have_the_unit_of_g70_or_g71_and_axes_of_the_channel(code: int) -> None:
     control = Control()
     control.run(f'FXC("Z",{code},0)=40', f'FXC("-Z",{code},0)=2')
@@ -206,6 +209,7 @@ def test_tables_are_made_for_channels_and_their_columns_changed() -> None:
         pytest.param(",1", True, marks=pytest.mark.covers("cpl.FXCR.class.1")),
     ],
 )
+@pytest.mark.covers("cpl.FXCR")
 def test_tables_are_classified(text: str, strict: bool) -> None:
     control = Control()
     control.run(f'A=FXCR(1,"N"{text})')
@@ -251,6 +255,7 @@ GROUPS = [*range(145, 846, 100), *range(147, 848, 100)]
     "group", [pytest.param(each, marks=pytest.mark.covers(f"cpl.TC.group.{each}")) for each in GROUPS]
 )
 @pytest.mark.covers("cpl.TC.table.0", "cpl.ex.1887", "cpl.ex.1889", "cpl.ex.1892")
+@pytest.mark.covers("cpl.TC")
 def test_external_and_general_compensations_have_the_unit_of_g70_or_g71(group: int) -> None:
     control = Control()
     control.run(f"TC(1,{group},0)=12.5", f"TC(-1,{group},0)=0.25")
@@ -283,6 +288,7 @@ def test_external_and_general_compensations_have_the_unit_of_g70_or_g71(group: i
         for each in (1, 2, 3, 4, 5, 7, 8)
     ],
 )
+@pytest.mark.covers("cpl.TC")
 def test_general_compensations_have_lengths_and_angles(selection: int, length: bool) -> None:
     control = Control()
     control.tools.inch = True
@@ -302,6 +308,7 @@ def test_compensations_that_nobody_has_set_shift_nothing() -> None:
 
 
 @pytest.mark.covers("cpl.TC.sel.6")
+@pytest.mark.covers("cpl.TC")
 def test_the_type_of_compensation_is_only_read() -> None:
     control = Control()
     control.tools.values[347, 6] = 3.0

@@ -34,6 +34,7 @@ def root(tmp_path: Path) -> Root:
         ("SP", "N10 P SP[2.5]"),
     ],
 )
+@pytest.mark.covers("cpl.sub")
 def test_codes_call_the_programs_of_their_names(root: Root, file: str, block: str) -> None:
     root.write(file, COUNT)
     found = root.run(f"{block}\nN20 G0 X30\n{block}\nM30").variables
@@ -41,6 +42,7 @@ def test_codes_call_the_programs_of_their_names(root: Root, file: str, block: st
 
 
 @pytest.mark.covers("cpl.sub.GMP")
+@pytest.mark.covers("cpl.sub")
 def test_codes_of_the_control_and_unknown_ones_call_nothing(root: Root) -> None:
     for name in ("G1", "M3", "M50.bak"):
         root.write(name, COUNT)
@@ -70,6 +72,7 @@ HOLE = (
 
 
 @pytest.mark.covers("cpl.nc.G81_G86", "cpl.sub.modal")
+@pytest.mark.covers("cpl.sub")
 def test_drilling_programs_follow_every_move_until_they_are_cancelled(root: Root) -> None:
     root.write("99999083", HOLE)
     found = root.run(
@@ -90,6 +93,7 @@ def test_each_drilling_cycle_has_its_program(root: Root, code: int) -> None:
 
 
 @pytest.mark.covers("cpl.sub.modal")
+@pytest.mark.covers("cpl.sub")
 def test_modal_calls_reach_sub_programs_but_not_their_own(root: Root) -> None:
     root.write("99999081", HOLE)
     root.write("ROW", b"N1 G0 X10\nN2 X20\n")
@@ -103,6 +107,7 @@ def test_modal_calls_reach_sub_programs_but_not_their_own(root: Root) -> None:
 
 
 @pytest.mark.covers("cpl.sub.modal")
+@pytest.mark.covers("cpl.sub")
 def test_the_last_modal_call_is_the_one_that_holds(root: Root) -> None:
     root.write("99999081", b"1 IF #A%=NUL THEN #A%=0 ENDIF\n2 #A%=#A%+P1%\n")
     root.write("99999082", b"1 IF #B%=NUL THEN #B%=0 ENDIF\n2 #B%=#B%+P1%\n")

@@ -60,6 +60,44 @@ def test_errors_have_the_texts_of_the_manual_and_stop_the_program(
     assert root.run("1 #A=@1").variables["#A"] is None
 
 
+AT_THE_LIMIT = [
+    ("INVALID_PARAMETER", '1 DIM A$(5) : A$="ABC"\n2 #B$=MID$(A$,1,1)'),
+    ("INVALID_PARAMETER", '1 OPENW(1,"P1",200,8)\n2 A%=FILEPOS(1,1)+FILEPOS(1,3)'),
+    ("INVALID_PARAMETER", '1 DIM A$(5) : A$="ABC"\n2 A%=INSTR("B",A$,1024)'),
+    ("INVALID_LOGICAL_NUMBER", '1 OPENW(1,"P1")\n2 OPENW(9,"P2")'),
+    (
+        "INVALID_FILE_NUMBER",
+        '1 OPENW(1,"P1") : CLOSE(1)\n2 OPENR(9,"P1")\n3 A%=FILEPOS(9) : B%=FILESIZE(9) : SEEK(9,1)',
+    ),
+    ("ILLEGAL_FILE_SIZE", '1 OPENW(2,"P2",130)'),
+    ("INVALID_COMPONENT_LENGTH", '1 OPENW(2,"P3",1000,1)\n2 OPENW(3,"P4",1025,1024)'),
+    ("INVALID_COMPONENT_LENGTH", RANDOM + '4 OPENR(2,"P3",10)'),
+    ("INVALID_COMPONENT", RANDOM.replace("3 CLOSE(2)", "3 SEEK(2,1) : SEEK(2,2)")),
+    (
+        "INVALID_FILE_NAME",
+        '1 OPENW(1,"A12345678901234567890123456789") : CLOSE(1) : ERASE("A12345678901234567890123456789")',
+    ),
+    ("BLOCK_EXCEEDS_1024", LONG.format(1023) + '2 OPENW(1,"P6")\n3 PRN#(1,A$,"Y")'),
+    (
+        "INVALID_INTEGER_VALUE",
+        '1 OPENW(1,"P8") : PRN#(1,"2147483647")\n2 CLOSE(1)\n3 OPENR(1,"P8")\n4 INP#(1,I%)',
+    ),
+    (
+        "INVALID_FLOAT_VALUE",
+        '1 OPENW(1,"P9")\n2 FOR I%=1 TO 38 : PRN#(1,"9";) : NEXT I%\n3 CLOSE(1)\n4 OPENR(1,"P9")\n5 INP#(1,R)',
+    ),
+    ("INVALID_LINE_COLUMN", '1 DSP(46,1,"A") : DSP(1,79,"A")'),
+    ("MAX_STRING_LENGTH", LONG.format(77) + "2 DSP(1,1,A$)"),
+    ("FORMAT_NOT_PERMITTED", '1 DSP(1,1,"#####",12345)'),
+]
+
+
+@pytest.mark.covers(*sorted({f"cpl.err.{name}" for name, _ in AT_THE_LIMIT}))
+@pytest.mark.parametrize(("name", "program"), AT_THE_LIMIT)
+def test_what_is_just_within_the_limit_of_an_error_is_none(tmp_path: Path, name: str, program: str) -> None:
+    assert Root(tmp_path).run(f"{program}\n99 #A%=5\n").variables["#A%"] == 5
+
+
 @pytest.mark.covers("cpl.err.PRN_FORMAT_INCORRECT", "cpl.err.BMP_NOT_EXISTING", "cpl.err.ERASE_WARNING")
 @pytest.mark.parametrize(
     ("statement", "message"),

@@ -153,6 +153,7 @@ def test_level_return_and_softkeys_have_codes_above_the_characters(tmp_path: Pat
     assert [found[f"#{name}%"] for name in "ABCD"] == [139, 143, 148, 126]
 
 
+@pytest.mark.covers("cpl.changed.key_codes", "cpl.INKEY")
 @pytest.mark.parametrize(
     ("key", "code"),
     [

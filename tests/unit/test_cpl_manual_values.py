@@ -292,6 +292,7 @@ def test_the_permanent_field_has_100_double_elements_and_numbers_are_integers(ro
     "cpl.err.INVALID_LOGICAL_NUMBER", "cpl.err.INVALID_FILE_NUMBER", "cpl.OPENW", "cpl.OPENR", "cpl.FILEPOS"
 )
 @pytest.mark.covers("cpl.PRN#.n.1-9", "cpl.FILESIZE", "cpl.SEEK", "cpl.CLOSE")
+@pytest.mark.covers("cpl.PRN#")
 def test_files_have_the_numbers_1_to_9(root: Root) -> None:
     lines = [f'1 OPENW({n},"F{n}") : PRN#({n},"{n * 11}")' for n in range(1, 10)]
     lines += [

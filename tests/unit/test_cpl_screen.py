@@ -210,13 +210,13 @@ def test_table_1_and_its_background_are_there_at_the_start_and_on_demand(tmp_pat
 )  # fmt: skip
 def test_fonts_have_size_cut_and_orientation(tmp_path: Path, font: int, family: str) -> None:
     shown = Shown(
-        f'1 TFO({font},20,1,30) : DSP(3,4,"A")\n2 TFO(,12+7*1000,3) : DSP(4,4,"BC")\n3 TFO(,,2,0) : GPR(9,9,"D")\n'
+        f'1 TFO({font},20,1,30) : DSP(3,4,"A")\n2 TFO(,12+17*1000,3) : DSP(4,4,"BC")\n3 TFO(,,2,0) : GPR(9,9,"D")\n'
         '4 TFO(0,0,0,0) : DSP(5,4,"E")',
         tmp_path,
     )
     angle = 0 if font == 5 else 30
     assert [text.font for text in shown.surface.texts] == [
-        (font, 20, 0, 1, angle), (font, 12, 7, 3, angle), (font, 12, 7, 2, 0)
+        (font, 20, 0, 1, angle), (font, 12, 17, 3, angle), (font, 12, 17, 2, 0)
     ]  # fmt: skip
     assert shown.surface.texts[0][:3] == (24, 415 - 27, "A")
     assert shown.surface.cells[5, 4].character == "E"
@@ -226,7 +226,7 @@ def test_fonts_have_size_cut_and_orientation(tmp_path: Path, font: int, family: 
     assert ['font-style="italic"' in line for line in drawn] == [False, False, True, True]
     assert ["rotate(-30 " in line for line in drawn] == [False, angle > 0, angle > 0, False]
     assert 'font-size="20"' in drawn[1]
-    assert 'textLength="14"' in drawn[2]
+    assert 'textLength="34"' in drawn[2]
     assert 'font-size="9"' in drawn[0]
 
 

@@ -83,6 +83,7 @@ def test_a_string_variable_without_dimension_refers_to_its_source() -> None:
 
 @pytest.mark.covers("cpl.LEN")
 @pytest.mark.covers("cpl.string.assign.fromfield")
+@pytest.mark.covers("cpl.string.assign")
 def test_only_the_written_part_of_a_field_is_passed_on() -> None:
     assert results("DIM A$(10)", 'A$="ABC"', "#B$=A$", "#N%=LEN(#B$)", 'A$="UVWXYZ"', "#C$=#B$") == {
         "#B$": "UVW", "#N%": 3, "#C$": "UVW",
@@ -90,6 +91,7 @@ def test_only_the_written_part_of_a_field_is_passed_on() -> None:
 
 
 @pytest.mark.covers("cpl.MID$.stmt", "cpl.ex.3417", "cpl.ex.3423", "cpl.err.CHARACTER_FIELD_NOT_ASSIGNED")
+@pytest.mark.covers("cpl.MID$")
 def test_mid_writes_without_leaving_a_gap() -> None:
     assert results("DIM #A$(10)", '#A$="ABC"', 'MID$(#A$,4,3)="DEF"') == {"#A$": "ABCDEF"}
     assert failure("DIM #A$(10)", '#A$="ABC"', 'MID$(#A$,5,3)="DEF"') == GAP

@@ -100,6 +100,7 @@ def test_the_default_node_can_be_changed_and_nodes_be_listed() -> None:
 
 @pytest.mark.covers("fanuc.EW_HSSB", "fanuc.concept.return_convention")
 @pytest.mark.covers("fanuc.cnc_absolute", "fanuc.cnc_allclibhndl")
+@pytest.mark.covers("fanuc.cnc_dwnstart")
 def test_a_fault_of_a_node_is_the_answer_of_every_call() -> None:
     control, _ = attached()
     node = fwlib.attach(0, control)
@@ -113,6 +114,7 @@ def test_a_fault_of_a_node_is_the_answer_of_every_call() -> None:
 
 
 @pytest.mark.covers("fanuc.cnc_download", "fanuc.cnc_freelibhndl")
+@pytest.mark.covers("fanuc.cnc_dwnstart")
 def test_closing_a_handle_breaks_its_transfers_off_and_no_others() -> None:
     control, handle = attached()
     _, other = fwlib.cnc_allclibhndl()
@@ -127,6 +129,7 @@ def test_closing_a_handle_breaks_its_transfers_off_and_no_others() -> None:
 
 
 @pytest.mark.covers("fanuc.cnc_freelibhndl", "fanuc.cnc_relative")
+@pytest.mark.covers("fanuc.cnc_wrrelpos")
 def test_two_sessions_have_handles_of_their_own() -> None:
     control, handle = attached()
     session = fwlib.Session()
@@ -143,6 +146,7 @@ def test_two_sessions_have_handles_of_their_own() -> None:
 
 @covers("example.cnc_actf", "cnc_actf")
 @pytest.mark.covers("fanuc.ODBACT.data")
+@pytest.mark.covers("fanuc.struct.ODBACT")
 def test_example_actual_feed() -> None:
     control, handle = attached()
     registered(control, O1234="\nN10 G98 F1200\nN20 G1 X10. Z200.\nM30\n")
@@ -173,6 +177,7 @@ def test_actual_feed_in_inch_has_two_decimals() -> None:
     "example.cnc_absolute", "cnc_absolute", "enum.axis.ALL_AXES", "enum.axis.1..m", "concept.decimal_point"
 )
 @pytest.mark.covers("fanuc.ODBAXIS.data", "fanuc.ODBAXIS.type")
+@pytest.mark.covers("fanuc.struct.ODBAXIS")
 def test_example_absolute() -> None:
     control, handle = attached()
     moved(control, "G0 X120.005 Y-50.119 Z0.08")
@@ -214,6 +219,7 @@ def test_example_distance_is_twice_the_real_one() -> None:
 
 @covers("example.cnc_wrrelpos", "cnc_wrrelpos", "concept.position_contents")
 @pytest.mark.covers("fanuc.IDBWRR.data", "fanuc.IDBWRR.type")
+@pytest.mark.covers("fanuc.struct.IDBWRR")
 def test_example_relative_preset_to_the_origin() -> None:
     control, handle = attached()
     moved(control, "G0 X33.21 Y-7.5 Z3.")
@@ -348,6 +354,15 @@ def test_nothing_is_delayed_by_acceleration() -> None:
     [pytest.param(n, marks=covers(f"cnc_{n}.err.EW_LENGTH", f"cnc_{n}.err.EW_ATTRIB"), id=n) for n in READS],
 )
 @covers("concept.length_argument", "concept.axis_number")
+@pytest.mark.covers(
+    "fanuc.cnc_absolute",
+    "fanuc.cnc_accdecdly",
+    "fanuc.cnc_distance",
+    "fanuc.cnc_machine",
+    "fanuc.cnc_relative",
+    "fanuc.cnc_skip",
+    "fanuc.cnc_srvdelay",
+)
 def test_lengths_and_axes_of_position_reads(name: str) -> None:
     _, handle = attached(axes=4)
     assert read(name, handle, 1, 7)[0] == EW.EW_LENGTH
@@ -364,6 +379,12 @@ def test_lengths_and_axes_of_position_reads(name: str) -> None:
     "fanuc.cnc_dwnend", "fanuc.cnc_rdmacro", "fanuc.cnc_rdparam", "fanuc.cnc_rdtofs", "fanuc.cnc_wrtofs"
 )
 @covers("concept.option_none")
+@pytest.mark.covers(
+    "fanuc.cnc_dwnend.err.EW_DATA",
+    "fanuc.cnc_dwnstart",
+    "fanuc.cnc_wrparam",
+    "fanuc.cnc_wrparam.err.EW_NOOPT",
+)
 def test_reads_need_no_option() -> None:
     control, handle = attached(options=False)
     for name in READS:
@@ -397,6 +418,7 @@ def test_reads_need_no_option() -> None:
     "fanuc.ODBDY.pos.oaxis.machine",
     "fanuc.ODBDY.pos.oaxis.relative",
 )
+@pytest.mark.covers("fanuc.struct.ODBDY")
 def test_the_dynamic_data_are_those_of_the_single_functions() -> None:
     control, handle = attached(axes=4, rotary=(4,))
     registered(
@@ -451,6 +473,7 @@ LAST = {4: 599, 5: 749, 6: 499, 8: 399, 10: 5999, 15: 1999}
     "bit",
     [pytest.param(bit, marks=covers(f"ODBDY.alarm.bit{bit}"), id=str(bit)) for bit in range(16)],
 )
+@pytest.mark.covers("fanuc.ODBDY.alarm", "fanuc.struct.ODBDY")
 def test_bits_of_the_alarm_status(bit: int) -> None:
     control, handle = attached()
 
@@ -481,6 +504,7 @@ def test_bits_of_the_alarm_status(bit: int) -> None:
 # ---------------------------------------------------------------------- time
 
 
+@pytest.mark.covers("fanuc.cnc_absolute")
 def test_a_polling_program_sees_time_pass_and_one_cycle_in_one_round() -> None:
     control, handle = attached(Poll(1))
     registered(control, O5="\nG1 X-6. Y8. F3000\nM30\n")
@@ -499,6 +523,7 @@ def test_a_polling_program_sees_time_pass_and_one_cycle_in_one_round() -> None:
     assert control.clock.cycles == 0
 
 
+@pytest.mark.covers("fanuc.cnc_incpoint")
 def test_a_program_that_tries_again_what_is_busy_sees_time_pass() -> None:
     control, handle = attached(Poll(1))
     to = bytes(fwlib.ODBPOS(idata=1, ldata=700))

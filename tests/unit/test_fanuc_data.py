@@ -73,6 +73,7 @@ def test_tool_offsets_that_are_refused() -> None:
         pytest.param("IS-C", 9_999_999, 0.0001, 0.00001, marks=covers("units.IS_C", "ncparam.1004_1")),
     ],
 )
+@pytest.mark.covers("fanuc.cnc_wrtofs")
 def test_unit_and_range_of_tool_offsets(increment: str, limit: int, mm: float, inch: float) -> None:
     for model in ("H", "D"):
         control, handle = attached(increment=increment, model=model)
@@ -108,6 +109,7 @@ def test_unit_and_range_of_tool_offsets(increment: str, limit: int, mm: float, i
     "fanuc.ODBTLINF.ofs_type",
     "fanuc.ODBTLINF.use_no",
 )
+@pytest.mark.covers("fanuc.struct.IODBTO", "fanuc.struct.ODBTLINF")
 def test_examples_of_tool_offset_ranges() -> None:
     _, handle = attached()
     values = [37 * k - 1500 for k in range(1, 100)]
@@ -186,6 +188,7 @@ AXIS_TYPES = {
 @pytest.mark.covers("fanuc.cnc_rdparam.err.EW_ATTRIB", "fanuc.cnc_wrparam", "fanuc.cnc_rdparam")
 @pytest.mark.parametrize("kind", [pytest.param(k, marks=covers(f"paramtype.{k}"), id=k) for k in TYPES])
 @covers("enum.param_axis.0")
+@pytest.mark.covers("fanuc.cnc_rdparam.err.EW_LENGTH", "fanuc.cnc_rdparar", "fanuc.cnc_wrparam.err.EW_ATTRIB")
 def test_parameters_that_have_one_value(kind: str) -> None:
     _, handle = attached()
     number, given, attribute, size = TYPES[kind]
@@ -213,6 +216,13 @@ def test_parameters_that_have_one_value(kind: str) -> None:
     "kind", [pytest.param(k, marks=covers(f"paramtype.{k}_axis"), id=k) for k in AXIS_TYPES]
 )
 @covers("enum.param_axis.1..m", "enum.param_axis.ALL_AXES")
+@pytest.mark.covers(
+    "fanuc.cnc_rdparam.err.EW_ATTRIB",
+    "fanuc.cnc_rdparam.err.EW_LENGTH",
+    "fanuc.cnc_rdparar",
+    "fanuc.cnc_wrparam.err.EW_ATTRIB",
+    "fanuc.cnc_wrparas",
+)
 def test_parameters_of_axes(kind: str) -> None:
     _, handle = attached()
     number, values, size = AXIS_TYPES[kind]
@@ -243,6 +253,7 @@ def test_parameters_of_axes(kind: str) -> None:
 
 @covers("cnc_rdparam", "example.cnc_rdparam", "ncparam.1020")
 @pytest.mark.covers("fanuc.IODBPSD.u.cdatas")
+@pytest.mark.covers("fanuc.struct.IODBPSD")
 def test_example_axis_names() -> None:
     _, handle = attached(axes=4, rotary=(3,))
     code, data = fwlib.cnc_rdparam(handle, 1020, ALL_AXES, 4 + 1 * fwlib.MAX_AXIS)
@@ -292,6 +303,8 @@ def test_example_stroke_limits_act_on_the_machine() -> None:
     "cnc_wrparam.err.EW_NUMBER", "cnc_wrparam.err.EW_ATTRIB", "cnc_wrparam.err.EW_NOOPT", "cnc_wrparam.err.EW_PROT",
     "option.param_write", "ODBPARAIF.prm_type.bit5", "ODBPARAIF.prm_type.bit7",
 )  # fmt: skip
+@pytest.mark.covers("fanuc.cnc_wrparam")
+@pytest.mark.covers("fanuc.struct.ODBPARAIF")
 def test_parameters_that_are_refused_change_nothing() -> None:
     control, handle = attached(options=("pmc_axis",))
     before = {key: control.parameters.value(*key) for key in control.parameters._values}
@@ -339,6 +352,10 @@ def test_a_bit_is_changed_by_writing_its_byte() -> None:
 
 @pytest.mark.covers("fanuc.cnc_delete", "fanuc.cnc_rddynamic", "fanuc.cnc_search", "fanuc.cnc_upstart")
 @covers("concept.ps000_after_write", "ODBPARAIF.prm_type.bit6")
+@pytest.mark.covers(
+    "fanuc.cnc_delete.err.EW_BUSY", "fanuc.cnc_dwnstart", "fanuc.cnc_search.err.EW_BUSY", "fanuc.cnc_wrparam"
+)
+@pytest.mark.covers("fanuc.struct.ODBPARAIF")
 def test_some_parameters_need_the_power_switched_off() -> None:
     control, handle = attached(axes=2)
     registered(control, O12="\nM30\n")
@@ -457,6 +474,7 @@ def record(number: int, kind: int, axis: int, *values: int) -> bytes:
 
 
 @pytest.mark.covers("fanuc.cnc_wrparas")
+@pytest.mark.covers("fanuc.cnc_rdparar")
 def test_what_is_read_as_records_can_be_written_back() -> None:
     control, handle = attached()
     for number in (1420, 1423):
@@ -486,7 +504,8 @@ REFUSED: list[tuple[EW, bytes, int]] = [
 
 @pytest.mark.covers("fanuc.cnc_wrparas")
 @covers(
-    "cnc_wrparas.err.EW_LENGTH", "cnc_wrparas.err.EW_NUMBER", "cnc_wrparas.err.EW_ATTRIB", "cnc_wrparas.err.EW_NOOPT",
+    "cnc_wrparas.err.EW_LENGTH", "option.param_write", "cnc_wrparas.err.EW_NUMBER", "cnc_wrparas.err.EW_ATTRIB",
+    "cnc_wrparas.err.EW_NOOPT",
     "cnc_wrparas.err.EW_PROT",
 )  # fmt: skip
 def test_records_that_are_refused_change_nothing() -> None:
@@ -515,6 +534,7 @@ def test_records_that_are_refused_change_nothing() -> None:
     "fanuc.ODBPARAIF.prev_no",
     "fanuc.ODBPARAIF.next_no",
 )
+@pytest.mark.covers("fanuc.struct.ODBPARAIF")
 def test_walking_through_the_parameters() -> None:
     _, handle = attached()
     rows = parameter_rows()
@@ -560,6 +580,7 @@ BITS: dict[str, tuple[int, int, Iterable[int], Iterable[int]]] = {
 @pytest.mark.parametrize(
     "name", [pytest.param(n, marks=covers(f"ODBPARAIF.prm_type.{n}"), id=n) for n in BITS]
 )
+@pytest.mark.covers("fanuc.struct.ODBPARAIF")
 def test_attribute_bits(name: str) -> None:
     shift, mask, have, have_not = BITS[name]
     for number in have:
@@ -572,6 +593,7 @@ def test_attribute_bits(name: str) -> None:
 
 
 @covers("ODBPARAIF.prm_type.bit0_1")
+@pytest.mark.covers("fanuc.struct.ODBPARAIF")
 def test_type_attribute() -> None:
     assert [attributes(number) & 3 for number in (3201, 6710, 1410, 6711, 1006, 1020, 1825, 1320)] == [
         0,
@@ -605,7 +627,7 @@ def test_settings_are_the_parameters_of_the_setting_screen() -> None:
 @pytest.mark.covers("fanuc.cnc_rdsetr", "fanuc.cnc_wrsets")
 @covers(
     "cnc_rdsetr.err.EW_LENGTH", "cnc_rdsetr.err.EW_NUMBER", "cnc_rdsetr.err.EW_ATTRIB", "cnc_wrsets.err.EW_LENGTH",
-    "cnc_wrsets.err.EW_NUMBER", "cnc_wrsets.err.EW_ATTRIB", "cnc_wrsets.err.EW_NOOPT",
+    "option.param_write", "cnc_wrsets.err.EW_NUMBER", "cnc_wrsets.err.EW_ATTRIB", "cnc_wrsets.err.EW_NOOPT",
 )  # fmt: skip
 def test_settings_that_are_refused() -> None:
     control, handle = attached(options=False)

@@ -128,6 +128,7 @@ def test_rmt_executes_what_is_sent_and_mem_its_own_program() -> None:
     assert handle
 
 
+@pytest.mark.covers("fanuc.cnc_rddynamic")
 def test_buttons() -> None:
     control, handle = attached(axes=1)
     registered(control, O7="\nG1 X2. F6000\nM1\nX4.\nM30\n")
@@ -262,6 +263,7 @@ def test_speeds_and_limits_of_an_inch_machine() -> None:
 @pytest.mark.parametrize(
     ("code", "name"), [(0, "Y"), (ord("X"), "Y"), (7, "Y"), (ord("N"), "Y"), (ord("W"), "W")]
 )
+@pytest.mark.covers("fanuc.cnc_wrparam")
 def test_axis_names_come_from_a_parameter_and_are_never_unusable(code: int, name: str) -> None:
     control, handle = attached(axes=2)
     moved(control, "G0 X3. Y-4.")
@@ -278,6 +280,7 @@ def test_axis_names_come_from_a_parameter_and_are_never_unusable(code: int, name
     assert fwlib.cnc_machine(handle, 2, 8)[1].data[0] == 1500
 
 
+@pytest.mark.covers("fanuc.cnc_absolute")
 def test_work_offsets_are_parameters() -> None:
     control, handle = attached()
     control.parameters.set(1222, -2_500, 2)
@@ -339,6 +342,7 @@ def test_a_snapshot_is_gone_back_to() -> None:
     assert moment.cycle == 150
 
 
+@pytest.mark.covers("fanuc.cnc_download", "fanuc.cnc_dwnend")
 def test_two_programs_in_two_threads_have_one_control() -> None:
     control, _ = attached(axes=1)
     opened = []
@@ -366,6 +370,7 @@ def test_two_programs_in_two_threads_have_one_control() -> None:
 
 
 @pytest.mark.covers("fanuc.cnc_wrmdiprog")
+@pytest.mark.covers("fanuc.cnc_dwnstart", "fanuc.cnc_wrmacro", "fanuc.cnc_wrmdiprog.err.EW_DATA")
 def test_power_off_and_on() -> None:
     control, handle = attached(axes=2)
     registered(control, O7="\nG1 X5. F600\nM30\n")
@@ -399,6 +404,7 @@ def test_power_off_and_on() -> None:
 
 
 @pytest.mark.covers("fanuc.cnc_rdmacro", "fanuc.cnc_rdprogdir", "fanuc.cnc_rdtofs")
+@pytest.mark.covers("fanuc.cnc_wrmacro", "fanuc.cnc_wrtofs")
 def test_everything_durable_is_in_the_file(tmp_path: Path) -> None:
     file = tmp_path / "power-mate.db"
     control, handle = attached(memory=file, axes=2, increment="IS-A")

@@ -65,6 +65,7 @@ def test_example_directory(kind: int) -> None:
 
 
 @covers("example.cnc_rdprogdir")
+@pytest.mark.covers("fanuc.cnc_rdprogdir")
 def test_example_directory_printed_program_by_program() -> None:
     _, handle = _directory()
     code, found = fwlib.cnc_rdprogdir(handle, 0, 200, 9000, 255)
@@ -114,6 +115,7 @@ def test_directory_requests_that_are_refused() -> None:
     "fanuc.ODBNC.u.bin.used_mem",
     "fanuc.ODBNC.u.bin.unused_mem",
 )
+@pytest.mark.covers("fanuc.struct.ODBNC")
 def test_program_information() -> None:
     _, handle = _directory()
     code, info = fwlib.cnc_rdproginfo(handle, 0, 12)
@@ -139,6 +141,7 @@ def test_program_information() -> None:
 
 @covers("example.cnc_rdprgnum", "cnc_rdprgnum", "concept.subprogram_numbers")
 @pytest.mark.covers("fanuc.ODBPRO.data", "fanuc.ODBPRO.mdata")
+@pytest.mark.covers("fanuc.struct.ODBPRO")
 def test_example_program_numbers_in_a_subprogram() -> None:
     control, handle = attached()
     registered(
@@ -200,6 +203,7 @@ def test_the_program_in_execution() -> None:
 
 
 @covers("cnc_wrmdiprog", "example.cnc_wrmdiprog_format", "concept.mdi_program", "mode.MDI")
+@pytest.mark.covers("fanuc.cnc_absolute", "fanuc.cnc_wrmdiprog.err.EW_DATA")
 def test_example_mdi_program() -> None:
     control, handle = attached(axes=1)
     control.select_mode("MDI")
@@ -217,6 +221,7 @@ def test_example_mdi_program() -> None:
     "cnc_wrmdiprog.err.EW_LENGTH", "cnc_wrmdiprog.err.EW_DATA", "cnc_wrmdiprog.err.EW_MODE",
     "cnc_wrmdiprog.err.EW_REJECT", "range.mdi_length",
 )  # fmt: skip
+@pytest.mark.covers("fanuc.cnc_wrmdiprog")
 def test_mdi_programs_that_are_refused() -> None:
     control, handle = attached(axes=1)
 
@@ -253,6 +258,7 @@ def test_mdi_programs_that_are_refused() -> None:
 @pytest.mark.covers(
     "fanuc.ODBMDIP.mdiprog", "fanuc.ODBMDIP.mdipntr", "fanuc.ODBMDIP.crntprog", "fanuc.ODBMDIP.crntpntr"
 )
+@pytest.mark.covers("fanuc.struct.ODBMDIP")
 def test_mdi_pointers() -> None:
     control, handle = attached(axes=1)
     registered(control, O77="\nG4P80\nM99\n")
@@ -314,6 +320,7 @@ def test_mdi_pointers_that_are_refused() -> None:
 
 @pytest.mark.covers("fanuc.cnc_rdexecprog", "fanuc.cnc_rdseqnum")
 @covers("cnc_seqsrch", "cnc_rewind")
+@pytest.mark.covers("fanuc.cnc_absolute")
 def test_a_start_begins_at_the_sequence_number_that_was_sought() -> None:
     control, handle = attached(axes=2)
     registered(control, O7="\nN10 G1 X10. F6000\nN20 Y5.\nN30 X2.5\nM30\n")
@@ -351,6 +358,14 @@ def test_a_start_begins_at_the_sequence_number_that_was_sought() -> None:
     "cnc_seqsrch.err.EW_DATA", "cnc_seqsrch.err.EW_MODE", "cnc_seqsrch.err.EW_REJECT", "cnc_rewind.err.EW_MODE",
     "cnc_rewind.err.EW_REJECT", "concept.mode_matrix",
 )  # fmt: skip
+@pytest.mark.covers(
+    "fanuc.cnc_dwnstart",
+    "fanuc.cnc_dwnstart.err.EW_BUSY",
+    "fanuc.cnc_rdmdipntr.err.EW_MODE",
+    "fanuc.cnc_rdprogdir",
+    "fanuc.cnc_wrmdiprog",
+    "fanuc.cnc_wrmdiprog.err.EW_MODE",
+)
 def test_searches_of_the_cursor_that_are_refused() -> None:
     control, handle = attached(axes=1)
     registered(control, O7="\nN10 G1 X10. F600\nN20 X5.\nM30\n")

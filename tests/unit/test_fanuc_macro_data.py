@@ -129,6 +129,8 @@ def test_binary_form_reaches_farther_than_the_decimal_one() -> None:
 )
 @covers("cnc_rdmacroinfo", "cnc_rdmacro.err.EW_NUMBER", "cnc_wrmacro.err.EW_NUMBER")
 @pytest.mark.covers("fanuc.ODBMVINF.use_no1", "fanuc.ODBMVINF.use_no2", "fanuc.ODBM.dec_val")
+@pytest.mark.covers("fanuc.cnc_rdmacro", "fanuc.cnc_rdmacror.err.EW_NUMBER", "fanuc.cnc_wrmacro")
+@pytest.mark.covers("fanuc.struct.ODBM", "fanuc.struct.ODBMVINF")
 def test_ranges_of_common_variables(
     options: Any, code: int, there: tuple[int, ...], missing: tuple[int, ...]
 ) -> None:
@@ -146,6 +148,12 @@ def test_ranges_of_common_variables(
 
 @pytest.mark.covers("fanuc.cnc_wrmacror")
 @covers("concept.macro_local_scope")
+@pytest.mark.covers(
+    "fanuc.cnc_rdmacror",
+    "fanuc.cnc_wrmacro",
+    "fanuc.cnc_wrmacro.err.EW_NUMBER",
+    "fanuc.cnc_wrmacror.err.EW_NUMBER",
+)
 def test_local_variables_are_those_of_the_macro_and_cannot_be_written() -> None:
     control, handle = attached()
     assert [macro(handle, number) for number in (1, 33)] == [(0, -1)] * 2  # no macro
@@ -163,6 +171,7 @@ def test_local_variables_are_those_of_the_macro_and_cannot_be_written() -> None:
 @pytest.mark.covers(
     "fanuc.IODBMR.datano_s", "fanuc.IODBMR.datano_e", "fanuc.IODBMR.data.mcr_val", "fanuc.IODBMR.data.dec_val"
 )
+@pytest.mark.covers("fanuc.struct.IODBMR")
 def test_ranges_of_macro_variables() -> None:
     control, handle = attached()
     count = 20
@@ -190,6 +199,8 @@ def test_ranges_of_macro_variables() -> None:
     "cnc_rdmacror.err.EW_NUMBER",
     "cnc_wrmacror.err.EW_LENGTH", "cnc_wrmacror.err.EW_NUMBER", "cnc_wrmacror.err.EW_DATA",
 )  # fmt: skip
+@pytest.mark.covers("fanuc.cnc_wrmacro")
+@pytest.mark.covers("fanuc.cnc_wrmacror")
 def test_macro_requests_that_are_refused_change_nothing() -> None:
     control, handle = attached()
 
@@ -213,6 +224,7 @@ def test_macro_requests_that_are_refused_change_nothing() -> None:
     assert written(500, 502, 24, (1, 0), (2, 9), (3, 0)) == EW.EW_DATA
 
 
+@pytest.mark.covers("fanuc.cnc_wrmacro")
 def test_a_reset_clears_volatile_variables_if_parameter_6001_says_so() -> None:
     control, handle = attached()
     for number in (100, 500):

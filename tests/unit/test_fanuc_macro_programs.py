@@ -37,6 +37,7 @@ def alarms(handle: int) -> list[tuple[int, int, str]]:
     return found
 
 
+@pytest.mark.covers("fanuc.cnc_wrmacro")
 def test_a_program_and_a_pc_share_the_variables_while_it_runs() -> None:
     control, handle = attached()
     registered(control, O1="\n#500=7.25\nG4X0.5\n#101=#500*2\nWHILE[#102EQ#0]DO1\nEND1\n#103=#102+0.5\nM30\n")
@@ -51,6 +52,7 @@ def test_a_program_and_a_pc_share_the_variables_while_it_runs() -> None:
     assert macro(handle, 103) == (46, 1)
 
 
+@pytest.mark.covers("fanuc.cnc_wrmacro")
 def test_a_pair_stays_until_the_program_writes_another_value() -> None:
     control, handle = attached()
     for number in (500, 501):
@@ -248,6 +250,7 @@ def test_mdi_takes_macro_statements_too() -> None:
     assert (control.macros.get(500), control.positions.read()[0].absolute) == (4.0, 500)
 
 
+@pytest.mark.covers("fanuc.cnc_wrmacro")
 def test_without_the_option_statements_are_refused() -> None:
     control, handle = attached(options=("macro_variables_300",))
     registered(control, O1="\n#500=4\nM30\n")
@@ -359,6 +362,7 @@ def until_rest(control: PowerMate) -> RunState:
     return control.status().channel.run_state
 
 
+@pytest.mark.covers("fanuc.cnc_wrmacro", "fanuc.cnc_wrmacro.err.EW_DATA")
 def test_two_handles_and_two_controls_do_not_share_variables() -> None:
     first, handle = attached()
     second = PowerMate()

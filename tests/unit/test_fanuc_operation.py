@@ -93,6 +93,7 @@ def test_cutting_time_does_not_depend_on_who_looks(step: int) -> None:
 
 @pytest.mark.covers("fanuc.cnc_opdi.number.10")
 @pytest.mark.parametrize("percent", [150, 200, 201, 254])
+@pytest.mark.covers("fanuc.cnc_opdi")
 def test_a_feed_override_acts_up_to_254_percent(percent: int) -> None:
     control, _ = attached(axes=2)
     registered(control, O7="\nG1 X40. F1000\nM30\n")

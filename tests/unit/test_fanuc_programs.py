@@ -58,6 +58,7 @@ def test_several_programs_come_together_or_not_at_all() -> None:
     unchanged(control, lambda: sent(handle, "\nO8\nM99\nO8\nM99\n%")[1], EW.EW_DATA)
 
 
+@pytest.mark.covers("fanuc.cnc_dwnstart")
 def test_a_stream_that_is_cut_leaves_no_half_program() -> None:
     control, handle = attached()
     unchanged(control, lambda: sent(handle, "\nO8\nG1X1.\nM30\n")[1], EW.EW_DATA)
@@ -69,6 +70,14 @@ def test_a_stream_that_is_cut_leaves_no_half_program() -> None:
 @pytest.mark.covers("fanuc.cnc_dwnstart")
 @pytest.mark.covers("fanuc.cnc_search")
 @covers("concept.download_session", "cnc_download.err.EW_FUNC", "cnc_dwnend.err.EW_FUNC")
+@pytest.mark.covers(
+    "fanuc.cnc_download",
+    "fanuc.cnc_download.err.EW_DATA",
+    "fanuc.cnc_dwnend",
+    "fanuc.cnc_dwnend.err.EW_DATA",
+    "fanuc.cnc_dwnstart.err.EW_BUSY",
+    "fanuc.cnc_search.err.EW_BUSY",
+)
 def test_download_session() -> None:
     control, handle = attached()
     assert fwlib.cnc_download(handle, "\n", 1) == EW.EW_FUNC
@@ -89,6 +98,7 @@ def test_download_session() -> None:
 
 @pytest.mark.covers("fanuc.cnc_dwnend")
 @covers("cnc_download.err.EW_LENGTH", "range.download_number")
+@pytest.mark.covers("fanuc.cnc_download", "fanuc.cnc_dwnstart")
 def test_a_piece_has_1_to_256_characters() -> None:
     control, handle = attached()
     long = "\nO7\n" + "X1234567\n" * 28
@@ -121,6 +131,7 @@ def test_a_piece_has_1_to_256_characters() -> None:
         "\nO\nM30\n%",
     ],
 )
+@pytest.mark.covers("fanuc.cnc_download", "fanuc.cnc_dwnend")
 def test_streams_that_are_refused(stream: str) -> None:
     control, handle = attached()
     registered(control, O7="\nM30\n", O55="\nM30\n")
@@ -130,6 +141,7 @@ def test_streams_that_are_refused(stream: str) -> None:
     assert sent(handle, FORMAT) == (OK, OK)
 
 
+@pytest.mark.covers("fanuc.cnc_download", "fanuc.cnc_dwnstart")
 def test_the_last_pieces_are_judged_at_the_end() -> None:
     control, handle = attached()
     assert fwlib.cnc_dwnstart(handle) == OK
@@ -139,6 +151,7 @@ def test_the_last_pieces_are_judged_at_the_end() -> None:
 
 
 @covers("concept.tv_check", "ncparam.0000_0")
+@pytest.mark.covers("fanuc.cnc_wrmdiprog", "fanuc.cnc_wrmdiprog.err.EW_DATA")
 def test_tv_check_counts_the_characters_of_a_block() -> None:
     control, handle = attached()
     assert sent(handle, FORMAT) == (OK, OK)
@@ -174,6 +187,7 @@ def test_parameters_of_registration() -> None:
 @pytest.mark.covers("fanuc.EW_OVRFLOW")
 @pytest.mark.covers("fanuc.cnc_delete")
 @covers("cnc_download.err.EW_OVRFLOW", "cnc_dwnend.err.EW_OVRFLOW", "concept.memory_accounting")
+@pytest.mark.covers("fanuc.cnc_download", "fanuc.cnc_dwnend")
 def test_a_full_memory() -> None:
     control, handle = attached(characters=60, most_programs=2)
     assert sent(handle, FORMAT) == (OK, OK)
@@ -191,6 +205,7 @@ def test_a_full_memory() -> None:
 @pytest.mark.covers("fanuc.EW_RESET")
 @covers("cnc_download.err.EW_RESET")
 @pytest.mark.parametrize("button", ["reset", "feed_hold"])
+@pytest.mark.covers("fanuc.cnc_download", "fanuc.cnc_dwnend", "fanuc.cnc_dwnstart")
 def test_reset_and_stop_end_a_download(button: str) -> None:
     control, handle = attached()
     assert fwlib.cnc_dwnstart(handle) == OK
@@ -217,6 +232,7 @@ def test_a_download_never_answers_that_a_buffer_is_full() -> None:
 @covers("example.cnc_upload_format", "cnc_upstart", "cnc_upload", "cnc_upend", "format.upload")
 @covers("concept.no_nul_termination")
 @pytest.mark.covers("fanuc.ODBUP.data")
+@pytest.mark.covers("fanuc.struct.ODBUP")
 def test_example_upload_in_pieces() -> None:
     _, handle = attached()
     assert sent(handle, FORMAT) == (OK, OK)
@@ -234,6 +250,7 @@ def test_example_upload_in_pieces() -> None:
 
 @pytest.mark.covers("fanuc.cnc_upend", "fanuc.cnc_upstart")
 @covers("example.cnc_upload")
+@pytest.mark.covers("fanuc.cnc_upload")
 def test_example_upload_loop_until_the_percent() -> None:
     _, handle = attached()
     assert sent(handle, *PIECES) == (OK, OK)
@@ -255,13 +272,17 @@ def test_example_upload_loop_until_the_percent() -> None:
     "concept.upload_session", "cnc_upstart.err.EW_BUSY", "cnc_upstart.err.EW_DATA", "cnc_upload.err.EW_FUNC",
     "cnc_upload.err.EW_LENGTH", "cnc_upend.err.EW_FUNC",
 )  # fmt: skip
+@pytest.mark.covers("fanuc.cnc_upstart")
 def test_upload_session() -> None:
     control, handle = attached()
     assert sent(handle, FORMAT) == (OK, OK)
     assert fwlib.cnc_upload(handle, 5)[0] == EW.EW_FUNC
     assert fwlib.cnc_upend(handle) == EW.EW_FUNC
-    for number in (1235, 0, -1, 10000):
-        assert fwlib.cnc_upstart(handle, number) == EW.EW_DATA
+    registered(control, O12="\nM30\n")
+    for selected in (12, 1234):  # no number stands for the selected program
+        control.select_program(selected)
+        for number in (1235, 0, -1, -1234, 10000):
+            assert fwlib.cnc_upstart(handle, number) == EW.EW_DATA
     assert fwlib.cnc_upstart(handle, 1234) == OK
     assert fwlib.cnc_upstart(handle, 1234) == EW.EW_BUSY
     code, _, number = fwlib.cnc_upload(handle, 0)
@@ -289,6 +310,13 @@ def _memory(*, selected: int = 201, **keys: object) -> tuple[PowerMate, int]:
 
 
 @pytest.mark.covers("fanuc.cnc_upload", "fanuc.cnc_upstart")
+@pytest.mark.covers(
+    "fanuc.cnc_download",
+    "fanuc.cnc_download.err.EW_FUNC",
+    "fanuc.cnc_dwnstart",
+    "fanuc.cnc_statinfo",
+    "fanuc.cnc_upload.err.EW_FUNC",
+)
 def test_transfers_end_with_the_power() -> None:
     control, handle = attached()
     registered(control, O7="\nG4X7.\nM30\n")
@@ -306,6 +334,7 @@ def test_transfers_end_with_the_power() -> None:
     "cnc_search", "enum.search.foreground", "enum.search.background", "mode.MEM", "mode.EDIT", "mode.OTHER",
     "concept.selected_program", "example.cnc_search", "cnc_search.err.EW_DATA",
 )  # fmt: skip
+@pytest.mark.covers("fanuc.cnc_rdprgnum")
 def test_search_selects_in_mem_and_edit_only() -> None:
     control, handle = _memory()
     for mode in ("MEM", "EDIT"):
@@ -419,6 +448,7 @@ MATRIX: list[tuple[Callable[[PowerMate, int], None], dict[str, EW]]] = [
 )  # fmt: skip
 @pytest.mark.parametrize("call", CALLS)
 @pytest.mark.parametrize(("state", "answers"), [pytest.param(*each, id=each[0].__name__) for each in MATRIX])
+@pytest.mark.covers("fanuc.cnc_delall", "fanuc.cnc_delete", "fanuc.cnc_dwnstart", "fanuc.cnc_search")
 def test_refusal_matrix(state: Callable[[PowerMate, int], None], answers: dict[str, EW], call: str) -> None:
     control, handle = _memory()
     control.select_mode("EDIT")
@@ -431,6 +461,7 @@ def test_refusal_matrix(state: Callable[[PowerMate, int], None], answers: dict[s
 
 
 @covers("cnc_delete.err.EW_BUSY")
+@pytest.mark.covers("fanuc.cnc_delete", "fanuc.cnc_search")
 def test_the_selected_program_is_not_deleted() -> None:
     control, handle = _memory()
     unchanged(control, lambda: fwlib.cnc_delete(handle, 201), EW.EW_BUSY)
@@ -438,6 +469,7 @@ def test_the_selected_program_is_not_deleted() -> None:
     assert fwlib.cnc_delete(handle, 201) == OK
 
 
+@pytest.mark.covers("fanuc.cnc_delete", "fanuc.cnc_search")
 def test_in_other_modes_than_edit_and_mem_the_op_signal_does_not_matter() -> None:
     control, handle = _memory()
     _running(control, handle)
@@ -460,6 +492,8 @@ def test_in_other_modes_than_edit_and_mem_the_op_signal_does_not_matter() -> Non
         (3210, 55, (9000, 9001), (8999, 1)),
     ],
 )
+@pytest.mark.covers("fanuc.cnc_delete")
+@pytest.mark.covers("fanuc.cnc_download", "fanuc.cnc_dwnend")
 def test_parameters_protect_programs(
     parameter: int, value: int, guarded: tuple[int, int], free: tuple[int, int]
 ) -> None:
@@ -483,6 +517,7 @@ def test_parameters_protect_programs(
 
 
 @covers("ncparam.3290_7")
+@pytest.mark.covers("fanuc.cnc_delete")
 def test_which_key_protects_programs() -> None:
     control, handle = _memory()
     control.protect_key(key=1)

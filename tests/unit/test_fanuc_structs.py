@@ -12,6 +12,7 @@ import pytest
 from polycnc.conformance import read_rows
 from polycnc.controllers.fanuc import fwlib
 from polycnc.controllers.library import variant
+from support.c_elements import is_signed
 from support.power_mate import attached
 
 CONFORMANCE = Path(__file__).resolve().parents[2] / "conformance"
@@ -127,6 +128,7 @@ def test_return_codes(name: str, number: int) -> None:
 
 
 @covers("concept.return_convention")
+@pytest.mark.covers("fanuc.cnc_absolute", "fanuc.cnc_rdprgnum")
 def test_a_function_answers_its_code_first_and_success_is_zero() -> None:
     _, handle = attached()
     assert fwlib.cnc_rdprgnum(handle)[0] == 0
@@ -215,6 +217,9 @@ def _place(cls: Any, path: str) -> tuple[int, int]:
 )
 def test_elements_lie_where_the_manual_shows_them(struct: str, path: str) -> None:
     assert _place(getattr(fwlib, struct), path) == LAYOUTS[struct][1][path]
+    printed = ROWS[f"fanuc.{struct}.{path}"].signature
+    if printed.startswith(("short", "long", "unsigned")):
+        assert is_signed(getattr(fwlib, struct), path) is not printed.startswith("unsigned")
 
 
 @pytest.mark.parametrize(
@@ -257,6 +262,7 @@ def _entry_size() -> int:
 
 @pytest.mark.covers("fanuc.cnc_rdmacror", "fanuc.cnc_rdproginfo", "fanuc.cnc_rdtofsr")
 @covers("concept.struct_packing")
+@pytest.mark.covers("fanuc.cnc_rddynamic", "fanuc.cnc_rdmacro")
 def test_nothing_is_aligned_to_four_bytes_but_lengths_of_that_packing_are_taken() -> None:
     assert _place(fwlib.ODBDY, "seqnum")[0] == 10
     assert _entry_size() == 6
@@ -269,6 +275,7 @@ def test_nothing_is_aligned_to_four_bytes_but_lengths_of_that_packing_are_taken(
     assert fwlib.cnc_rdproginfo(handle, 1, 32)[0] == 0
 
 
+@pytest.mark.covers("fanuc.cnc_rddynamic", "fanuc.cnc_rddynamic.err.EW_LENGTH")
 def test_a_power_mate_d_has_two_axes_in_its_structures() -> None:
     _, handle = attached(model="D")
     code, dynamic = fwlib.cnc_rddynamic(handle, -1, 22 + 16 * 2)

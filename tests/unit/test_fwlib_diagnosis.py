@@ -8,6 +8,7 @@ import pytest
 
 from polycnc.controllers.fanuc import PowerMate, fwlib
 from polycnc.controllers.fanuc.fwlib import EW
+from support.refusals import refused
 
 
 def at(control: PowerMate) -> tuple[Any, int]:
@@ -62,6 +63,7 @@ def arranged(kind: str) -> tuple[PowerMate, Any, int]:
     [pytest.param(*row, marks=pytest.mark.covers(f"fanuc.diag.kind.{row[0]}"), id=row[0]) for row in KINDS],
 )
 @pytest.mark.covers("fanuc.cnc_diagnoss", "fanuc.diag.bitread", "fanuc.diag.axis.0", "fanuc.diag.axis.1..m")
+@pytest.mark.covers("fanuc.cnc_diagnosr", "fanuc.cnc_diagnoss.err.EW_LENGTH")
 def test_a_diagnosis_value_of_each_kind(
     kind: str, number: int, size: int, axis: int, length: int, value: int
 ) -> None:
@@ -82,6 +84,8 @@ def test_a_diagnosis_value_of_each_kind(
 @pytest.mark.covers("fanuc.cnc_diagnoss")
 @pytest.mark.covers("fanuc.diag.axis.-1")
 @pytest.mark.covers("fanuc.ODBDGN.type")
+@pytest.mark.covers("fanuc.cnc_diagnoss.err.EW_LENGTH")
+@pytest.mark.covers("fanuc.ODBDGN")
 def test_all_axes_at_once() -> None:
     control, library, handle = moving()
     control.advance(8000)
@@ -94,25 +98,34 @@ def test_all_axes_at_once() -> None:
 @pytest.mark.covers("fanuc.cnc_diagnoss")
 @pytest.mark.parametrize(
     ("number", "axis", "code"),
-    [
-        pytest.param(6, 0, "EW_NUMBER", marks=pytest.mark.covers("fanuc.cnc_diagnoss.err.EW_NUMBER")),
+    refused(
+        "cnc_diagnoss",
+        (6, 0, "EW_NUMBER"),
         (-1, 0, "EW_NUMBER"),
-        pytest.param(301, 0, "EW_ATTRIB", marks=pytest.mark.covers("fanuc.cnc_diagnoss.err.EW_ATTRIB")),
+        (301, 0, "EW_ATTRIB"),
         (301, 7, "EW_ATTRIB"),
         (301, -2, "EW_ATTRIB"),
-    ],
+    ),
 )
 def test_a_diagnosis_is_refused(number: int, axis: int, code: str) -> None:
     library, handle = at(PowerMate())
     assert library.cnc_diagnoss(handle, number, axis, 28)[0] is EW[code]
 
 
-@pytest.mark.covers("fanuc.cnc_diagnoss")
-@pytest.mark.covers("fanuc.cnc_diagnoss.err.EW_LENGTH")
+@pytest.mark.covers("fanuc.cnc_diagnoss", "fanuc.cnc_diagnoss.err.EW_LENGTH")
 def test_a_diagnosis_needs_its_length() -> None:
-    library, handle = at(PowerMate())
-    assert library.cnc_diagnoss(handle, 301, 1, 7)[0] is EW.EW_LENGTH
-    assert library.cnc_diagnoss(handle, 4, 0, 5)[0] is EW.EW_OK
+    library, handle = at(PowerMate())  # with three axes
+    for number, axis, size in (
+        (4, 0, 1),
+        (20, 0, 1),
+        (30, 0, 2),
+        (31, 0, 4),
+        (203, -1, 3),
+        (202, -1, 6),
+        (301, -1, 12),
+    ):
+        assert library.cnc_diagnoss(handle, number, axis, 4 + size)[0] is EW.EW_OK
+        assert library.cnc_diagnoss(handle, number, axis, 4 + size - 1)[0] is EW.EW_LENGTH
 
 
 @pytest.mark.parametrize(
@@ -137,6 +150,7 @@ def test_an_entry_of_a_range(number: int, axis: int, kind: int, length: int) -> 
     assert len(data) == length
 
 
+@pytest.mark.covers("fanuc.cnc_diagnosr")
 def test_a_range_of_diagnosis_numbers() -> None:
     _, library, handle = arranged("byte_axis")
     code, first, last, used, data = library.cnc_diagnosr(handle, 25, -1, 250, 99)
@@ -151,20 +165,16 @@ def test_a_range_of_diagnosis_numbers() -> None:
 @pytest.mark.covers("fanuc.cnc_diagnosr")
 @pytest.mark.parametrize(
     ("first", "axis", "last", "length", "code"),
-    [
-        pytest.param(
-            25, -1, 250, 59, "EW_LENGTH", marks=pytest.mark.covers("fanuc.cnc_diagnosr.err.EW_LENGTH")
-        ),
-        pytest.param(
-            32, 0, 199, 99, "EW_NUMBER", marks=pytest.mark.covers("fanuc.cnc_diagnosr.err.EW_NUMBER")
-        ),
+    refused(
+        "cnc_diagnosr",
+        (25, -1, 250, 59, "EW_LENGTH"),
+        (30, 0, 31, 13, "EW_LENGTH"),
+        (32, 0, 199, 99, "EW_NUMBER"),
         (30, 0, 20, 99, "EW_NUMBER"),
         (-3, 0, 4, 99, "EW_NUMBER"),
-        pytest.param(
-            30, 0, 200, 99, "EW_ATTRIB", marks=pytest.mark.covers("fanuc.cnc_diagnosr.err.EW_ATTRIB")
-        ),
+        (30, 0, 200, 99, "EW_ATTRIB"),
         (200, 7, 201, 99, "EW_ATTRIB"),
-    ],
+    ),
 )
 def test_a_range_is_refused(first: int, axis: int, last: int, length: int, code: str) -> None:
     library, handle = at(PowerMate())
@@ -222,6 +232,7 @@ def test_figures_of_axes(system: str, mm: int, inch: int, degree: int) -> None:
         for system, row in table.items()
     ],
 )  # fmt: skip
+@pytest.mark.covers("fanuc.cnc_getfigure")
 def test_figures_of_tool_offsets_and_macro_variables(
     kind: int, digits: int, system: str, mm: int, inch: int
 ) -> None:
@@ -270,6 +281,7 @@ def test_servo_values_of_a_moving_machine() -> None:
     "fanuc.cnc_rdopmsg.type.0", "fanuc.OPMSG.type.0",
 )  # fmt: skip
 @pytest.mark.covers("fanuc.OPMSG.datano", "fanuc.OPMSG.type", "fanuc.OPMSG.char_num", "fanuc.OPMSG.data")
+@pytest.mark.covers("fanuc.OPMSG")
 def test_the_manuals_program_prints_the_message() -> None:
     control = PowerMate()
     library, handle = at(control)
@@ -299,9 +311,13 @@ def test_the_manuals_program_prints_the_message() -> None:
 @pytest.mark.parametrize(
     ("kind", "length", "options", "code"),
     [
-        pytest.param(0, 261, True, "EW_LENGTH", marks=pytest.mark.covers("fanuc.cnc_rdopmsg.err.EW_LENGTH")),
-        pytest.param(1, 262, True, "EW_ATTRIB", marks=pytest.mark.covers("fanuc.cnc_rdopmsg.err.EW_ATTRIB")),
-        pytest.param(0, 262, False, "EW_NOOPT", marks=pytest.mark.covers("fanuc.cnc_rdopmsg.err.EW_NOOPT")),
+        *refused(
+            "cnc_rdopmsg",
+            (0, 261, True, "EW_LENGTH"),
+            (1, 262, True, "EW_ATTRIB"),
+            (-1, 262, True, "EW_ATTRIB"),
+            (0, 262, False, "EW_NOOPT"),
+        ),
         pytest.param(0, 262, ("external_data_input",), "EW_NOOPT",
                      marks=pytest.mark.covers("fanuc.option.external_message")),
         pytest.param(0, 262, ("external_message",), "EW_NOOPT",
@@ -329,6 +345,7 @@ def test_what_moves_is_told_of_each_axis() -> None:
     assert told(201, 1, 2, 3) == [0, 0, 0]
 
 
+@pytest.mark.covers("fanuc.cnc_diagnoss")
 def test_what_moves_by_hand_and_what_stops_is_told() -> None:
     control = PowerMate()
     library, handle = at(control)

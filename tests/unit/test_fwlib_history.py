@@ -10,6 +10,7 @@ import pytest
 
 from polycnc.controllers.fanuc import PowerMate, fwlib
 from polycnc.controllers.fanuc.fwlib import EW
+from support.refusals import refused
 
 AT = datetime(2031, 4, 17, 22, 53, 41)
 
@@ -75,6 +76,7 @@ def alarms(library: Any, handle: int) -> bytes:
     "fanuc.cnc_rdophisno.err.EW_FUNC", "fanuc.cnc_rdophistry.err.EW_FUNC", "fanuc.cnc_rdalmhisno.err.EW_FUNC",
     "fanuc.cnc_rdalmhistry.err.EW_FUNC", "fanuc.concept.history_protocol",
 )  # fmt: skip
+@pytest.mark.covers("fanuc.cnc_rdophistry")
 def test_histories_are_read_while_sampling_is_stopped() -> None:
     control, library, handle = fresh()
     control.raise_alarm(85, "A")
@@ -107,6 +109,7 @@ def test_histories_are_read_while_sampling_is_stopped() -> None:
 @pytest.mark.covers("fanuc.cnc_rdophistry", "fanuc.ODBHIS.rec_type.0", "fanuc.concept.history_record_kinds")
 @pytest.mark.covers("fanuc.ODBHIS.rec_mdi", "fanuc.ODBHIS.rec_type", "fanuc.ODBHIS.rec_mdi.dummy")
 @pytest.mark.covers("fanuc.ODBHIS.key_code", "fanuc.ODBHIS.pw_flag")
+@pytest.mark.covers("fanuc.ODBHIS")
 def test_a_key() -> None:
     control, library, handle = fresh()
     control.history.press_key(ord("G"))
@@ -142,6 +145,7 @@ def monitored(library: Any, handle: int, *entries: tuple[int, int, int, int]) ->
     "fanuc.ODBHIS.sig_no",
     "fanuc.concept.history_record_kinds",
 )
+@pytest.mark.covers("fanuc.IODBSIG", "fanuc.ODBHIS", "fanuc.ODBHIS.rec_type")
 def test_the_change_of_a_signal(letter: str, number: int) -> None:
     control, library, handle = fresh()
     address = 3 if letter == "F" else 44
@@ -193,6 +197,7 @@ def test_the_change_of_a_signal(letter: str, number: int) -> None:
     "fanuc.ODBHIS.axis_no",
     "fanuc.concept.history_record_kinds",
 )
+@pytest.mark.covers("fanuc.ODBHIS", "fanuc.ODBHIS.rec_type")
 def test_an_alarm(bit: int, number: int) -> None:
     control, library, handle = fresh()
     numbers = (number, *ENDS.get(bit, ()))
@@ -204,6 +209,7 @@ def test_an_alarm(bit: int, number: int) -> None:
 
 
 @pytest.mark.covers(*(f"fanuc.ODBHIS.alm_grp.bit{bit}" for bit in (9, 11, 12, 13, 14)))
+@pytest.mark.covers("fanuc.ODBHIS", "fanuc.ODBHIS.alm_grp")
 def test_unused_alarm_groups_never_appear() -> None:
     control, library, handle = fresh()
     for number in (3, 100, 101, 255, 310, 399, 444, 512, 704, 749, 1000, 1999, 2000, 5999):
@@ -229,6 +235,7 @@ def test_unused_alarm_groups_never_appear() -> None:
     "fanuc.ODBHIS.pw_flag",
     "fanuc.concept.history_record_kinds",
 )
+@pytest.mark.covers("fanuc.ODBHIS")
 def test_power_on_notes_date_and_time() -> None:
     control, library, handle = fresh()
     control.power_cycle()
@@ -237,6 +244,7 @@ def test_power_on_notes_date_and_time() -> None:
 
 @pytest.mark.covers("fanuc.cnc_rdophistry")
 @pytest.mark.covers("fanuc.ODBHIS.s_no", "fanuc.ODBHIS.e_no")
+@pytest.mark.covers("fanuc.ODBHIS")
 def test_fewer_records_than_asked_for() -> None:
     control, library, handle = fresh()
     for code in (65, 66, 67):
@@ -251,37 +259,22 @@ def test_fewer_records_than_asked_for() -> None:
 @pytest.mark.parametrize(
     ("function", "first", "last", "length", "code"),
     [
-        pytest.param(
+        *refused(
             "cnc_rdophistry",
-            1,
-            2,
-            6 + 8,
-            "EW_LENGTH",
-            marks=pytest.mark.covers("fanuc.cnc_rdophistry.err.EW_LENGTH"),
+            *(("cnc_rdophistry", 1, 2, 6 + length, "EW_LENGTH") for length in (8, 15, 17, 24)),
         ),
-        ("cnc_rdophistry", 1, 2, 6 + 24, "EW_LENGTH"),
         ("cnc_rdophistry", 2, 1, 6 + 8, "EW_NUMBER"),
-        pytest.param(
+        ("cnc_rdophistry", 0, 1, 6 + 16, "EW_NUMBER"),
+        *refused(
             "cnc_rdalmhistry",
-            1,
-            2,
-            6 + 48,
-            "EW_LENGTH",
-            marks=pytest.mark.covers("fanuc.cnc_rdalmhistry.err.EW_LENGTH"),
+            *(("cnc_rdalmhistry", 1, 2, 6 + length, "EW_LENGTH") for length in (48, 95, 97)),
+            ("cnc_rdalmhistry", 0, 1, 6 + 96, "EW_NUMBER"),
+            ("cnc_rdalmhistry", 1, 3, 6 + 144, "EW_NUMBER"),
+            ("cnc_rdalmhistry", 2, 1, 6, "EW_NUMBER"),
         ),
-        ("cnc_rdalmhistry", 1, 2, 6 + 97, "EW_LENGTH"),
-        pytest.param(
-            "cnc_rdalmhistry",
-            0,
-            1,
-            6 + 96,
-            "EW_NUMBER",
-            marks=pytest.mark.covers("fanuc.cnc_rdalmhistry.err.EW_NUMBER"),
-        ),
-        ("cnc_rdalmhistry", 1, 3, 6 + 144, "EW_NUMBER"),
-        ("cnc_rdalmhistry", 2, 1, 6, "EW_NUMBER"),
     ],
 )
+@pytest.mark.covers("fanuc.cnc_rdalmhistry", "fanuc.cnc_rdophistry")
 def test_reading_is_refused(function: str, first: int, last: int, length: int, code: str) -> None:
     control, library, handle = fresh()
     control.raise_alarm(85, "A")
@@ -305,6 +298,7 @@ def test_reading_is_refused(function: str, first: int, last: int, length: int, c
     "fanuc.ODBAHIS.alm_his.axis_no",
     "fanuc.ODBAHIS.alm_his.len_msg",
 )
+@pytest.mark.covers("fanuc.ODBAHIS")
 def test_an_alarm_record_byte_by_byte() -> None:
     control, library, handle = fresh()
     control.raise_alarm(85, "COMMUNICATION ERROR OF THE READER/PUNCHER")
@@ -384,6 +378,7 @@ def test_the_table_has_twenty_entries_and_keeps_those_not_named() -> None:
     ],
 )  # fmt: skip
 @pytest.mark.covers("fanuc.cnc_wrhissgnl.err.EW_DATA")
+@pytest.mark.covers("fanuc.IODBSIG", "fanuc.ODBHIS", "fanuc.ODBHIS.sig_no", "fanuc.cnc_wrhissgnl")
 def test_addresses_that_can_be_watched(letter: str, good: tuple[int, ...], bad: tuple[int, ...]) -> None:
     _, library, handle = fresh()
     for address in good:
@@ -405,6 +400,7 @@ def test_a_wrong_table_is_refused_whole() -> None:
     assert all(each.sig_name == 0 for each in library.cnc_rdhissgnl(handle)[1].data)
 
 
+@pytest.mark.covers("fanuc.cnc_rdhissgnl")
 def test_histories_and_table_outlast_switching_off(tmp_path: Path) -> None:
     control, library, handle = fresh(memory=tmp_path / "memory")
     monitored(library, handle, (11, 3, 1007, 0x18))

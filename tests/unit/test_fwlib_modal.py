@@ -40,6 +40,7 @@ def g(library: Any, handle: int, group: int, block: int = 0) -> int:
     "fanuc.cnc_modal.block.2", "fanuc.ODBMDL.g_data.bit7", "fanuc.ODBMDL.g_data.bits6_0",
     "fanuc.cnc_modal.type.0_20",
 )  # fmt: skip
+@pytest.mark.covers("fanuc.ODBMDL", "fanuc.ODBMDL.g_data")
 def test_program_of_the_manual() -> None:
     library, handle, _ = executing(
         "N090 G18\nN100 G1 Z100. F3000\nN110 G17 G2 X10. Y-20. R12.\nN120 G91 G0 X1.", "N100"
@@ -90,6 +91,8 @@ CODES = [
     ],
 )
 @pytest.mark.covers("fanuc.ODBMDL.g_data", "fanuc.ODBMDL.g_rdata", "fanuc.cnc_modal.type.-1")
+@pytest.mark.covers("fanuc.cnc_modal")
+@pytest.mark.covers("fanuc.ODBMDL")
 def test_a_code_has_its_number_and_stays_in_force(group: int, value: int, text: str, words: str) -> None:
     extra = "G1 X3. Y7. Z9. F800" if group else "X3. Y7. R50."
     library, handle, _ = executing(f"{text}\n{extra}", words)
@@ -105,6 +108,7 @@ def _executes(control: PowerMate, block: str) -> bool:
 
 
 @pytest.mark.covers("fanuc.modal.G.11.1", "fanuc.modal.addr.102")
+@pytest.mark.covers("fanuc.cnc_modal")
 def test_a_modal_call_of_a_macro_and_the_argument_e() -> None:
     control = PowerMate()
     control.programs.register(1, "O0001\nG66P9000E7.25\nG1X3.F600\n#1=5\nG1X#1\nG67\nG4X1.\nM30\n")
@@ -134,6 +138,8 @@ def test_polar_interpolation_that_comes_next_has_its_number() -> None:
     "fanuc.cnc_modal.type.-1", "fanuc.modal.G.undefined", "fanuc.modal.G.11.0", "fanuc.modal.G.20.0"
 )
 @pytest.mark.covers("fanuc.ODBMDL.datano", "fanuc.ODBMDL.g_rdata")
+@pytest.mark.covers("fanuc.cnc_modal")
+@pytest.mark.covers("fanuc.ODBMDL")
 def test_all_groups_at_once_and_those_without_codes() -> None:
     library, handle, _ = executing("G91 G18\nG1 Z20. F900", "G1")
     code, modal = library.cnc_modal(handle, -1, 0)
@@ -148,6 +154,8 @@ def test_all_groups_at_once_and_those_without_codes() -> None:
 @pytest.mark.covers(
     "fanuc.ODBMDL.datano", "fanuc.ODBMDL.type", "fanuc.ODBMDL.g_data.bit7", "fanuc.ODBMDL.g_data.bits6_0"
 )
+@pytest.mark.covers("fanuc.cnc_modal")
+@pytest.mark.covers("fanuc.ODBMDL", "fanuc.ODBMDL.g_data")
 def test_every_group_has_its_own_place_in_the_list_of_all() -> None:
     library, handle, _ = executing(
         "S700 M3\nG91 G95\nG18 G44 H2 G3 X8. Z8. R8. F.4\nG19 G12.1 G94 G20 G90 G49 G1\nG66 P9000", "G18"
@@ -206,6 +214,8 @@ SINGLE = {
     ],
 )
 @pytest.mark.covers("fanuc.ODBMDL.datano", "fanuc.ODBMDL.aux", "fanuc.ODBMDL.raux1")
+@pytest.mark.covers("fanuc.cnc_modal")
+@pytest.mark.covers("fanuc.ODBMDL")
 def test_an_address_has_its_number_and_last_value(number: int, text: str, value: int) -> None:
     name = NUMBERS[number]
     control_axes = {"axes": 4, "rotary": (4,)} if name in "ABC" else {"axes": 4} if name in "UVW" else {}
@@ -237,6 +247,7 @@ def test_an_address_has_its_number_and_last_value(number: int, text: str, value:
         for k, value in enumerate((51250, -3500, 4125, -17000, 61000, -72500))
     ],
 )
+@pytest.mark.covers("fanuc.cnc_modal")
 def test_words_of_the_axes(number: int, value: int) -> None:
     names = "XYZABC"
     moves = " ".join(
@@ -256,6 +267,7 @@ def test_words_of_the_axes(number: int, value: int) -> None:
     "fanuc.ODBMDL.flag1.bits3_0", "fanuc.ODBMDL.flag2.bits2_0", "fanuc.ODBMDL.flag2.bits7_3",
 )  # fmt: skip
 @pytest.mark.covers("fanuc.ODBMDL.aux.flag2")
+@pytest.mark.covers("fanuc.ODBMDL", "fanuc.ODBMDL.aux")
 def test_what_is_known_about_a_word() -> None:
     library, handle, _ = executing("G1 X-12.5 F812.25\nY3.\nF60 X-20.", "G1")
 
@@ -291,6 +303,7 @@ def test_digits_of_m_are_those_of_the_parameter() -> None:
         (100, -1, "EW_ATTRIB"),
     ],
 )
+@pytest.mark.covers("fanuc.cnc_modal")
 def test_modal_data_are_refused(kind: int, block: int, code: str) -> None:
     control = PowerMate()
     session = fwlib.Session()

@@ -41,6 +41,8 @@ def buffers(library: Any, handle: int) -> list[list[int]]:
     "fanuc.example.cnc_abspoint", "fanuc.cnc_abspoint", "fanuc.nmod.0", "fanuc.ODBPOS.unit.linear_mm"
 )
 @pytest.mark.covers("fanuc.ODBPOS.idata", "fanuc.ODBPOS.ldata")
+@pytest.mark.covers("fanuc.cnc_absolute", "fanuc.cnc_finstate")
+@pytest.mark.covers("fanuc.ODBPOS")
 def test_absolute_motion_of_the_manual() -> None:
     control = PowerMate()
     control.programs.memory.create("O0004", b"O0004\nG0 X10. Y10.\n")
@@ -100,6 +102,8 @@ def test_reference_return_of_the_manual() -> None:
         ({}, 12345, "X", 0.001),
     ],
 )
+@pytest.mark.covers("fanuc.cnc_incpoint")
+@pytest.mark.covers("fanuc.ODBPOS")
 def test_units_of_positions(more: dict[str, Any], value: int, axis: str, unit: float) -> None:
     control = PowerMate(**more)
     library, handle = at(control)
@@ -129,6 +133,7 @@ def test_a_dwell_keeps_its_path_waiting() -> None:
 
 
 @pytest.mark.covers("fanuc.cnc_coordre")
+@pytest.mark.covers("fanuc.cnc_absolute")
 def test_setting_a_coordinate() -> None:
     control = PowerMate()
     library, handle = at(control)
@@ -162,6 +167,10 @@ def test_setting_a_coordinate() -> None:
     "fanuc.cnc_abspoint.err.EW_BUSY", "fanuc.cnc_coordre.err.EW_BUSY", "fanuc.cnc_refpoint.err.EW_BUSY",
 )  # fmt: skip
 @pytest.mark.covers("fanuc.ODBEXEC.cdata", "fanuc.ODBFIN.cdata")
+@pytest.mark.covers("fanuc.cnc_incpoint")
+@pytest.mark.covers(
+    "fanuc.ODBEXEC", "fanuc.ODBFIN", "fanuc.cnc_abspoint", "fanuc.cnc_coordre", "fanuc.cnc_dwell"
+)
 def test_two_buffers_and_a_completion_flag_per_path(path: int) -> None:
     control = PowerMate()
     library, handle = at(control)
@@ -195,6 +204,7 @@ def test_two_buffers_and_a_completion_flag_per_path(path: int) -> None:
     assert list(library.cnc_finstate(handle)[1].cdata) == none
 
 
+@pytest.mark.covers("fanuc.cnc_finstate")
 def test_a_reset_and_an_alarm_empty_the_buffers() -> None:
     for stop in (PowerMate.reset, PowerMate.emergency_stop, lambda control: control.raise_alarm(85, "X")):
         control = PowerMate()
@@ -250,6 +260,7 @@ def test_a_command_past_a_limit_names_it(axis: int, distance: int, alarm: tuple[
     assert [(each.number, each.text) for each in control.status().alarms] == [alarm]
 
 
+@pytest.mark.covers("fanuc.cnc_incpoint", "fanuc.cnc_incpoint.err.EW_BUSY")
 def test_a_running_program_has_the_axes() -> None:
     control = PowerMate()
     library, handle = at(control)
@@ -280,6 +291,7 @@ def test_a_running_program_has_the_axes() -> None:
     "fanuc.cnc_setfin",
 )
 @pytest.mark.covers("fanuc.concept.not_on_pmd")
+@pytest.mark.covers("fanuc.cnc_finstate", "fanuc.cnc_refpoint")
 def test_a_power_mate_d_has_none_of_this() -> None:
     library, handle = at(PowerMate(model="D"))
     zero, fin = idb((1, 1)), fwlib.ODBFIN()
@@ -320,6 +332,7 @@ def test_a_power_mate_d_has_the_functions_of_the_other_sections() -> None:
 
 @pytest.mark.covers("fanuc.cnc_exebufstat", "fanuc.cnc_setfin")
 @pytest.mark.covers("fanuc.param.8003_7", "fanuc.param.8010")
+@pytest.mark.covers("fanuc.cnc_finstate", "fanuc.cnc_incpoint", "fanuc.cnc_refpoint")
 def test_parameters_allow_direct_commands() -> None:
     control = PowerMate()
     library, handle = at(control)
@@ -390,6 +403,7 @@ def state(control: PowerMate) -> RunState:
     "fanuc.cnc_opdi.number.2", "fanuc.cnc_opdi.sig2.cdata.0", "fanuc.cnc_opdi.sig2.cdata.1",
     "fanuc.cnc_opdi.number.3", "fanuc.cnc_opdi.sig3.cdata.0", "fanuc.cnc_opdi.sig3.cdata.1",
 )  # fmt: skip
+@pytest.mark.covers("fanuc.cnc_statinfo")
 def test_start_hold_and_reset() -> None:
     control, library, handle = started()
     assert state(control) is RunState.ACTIVE
@@ -412,6 +426,8 @@ def test_start_hold_and_reset() -> None:
 
 
 @pytest.mark.covers("fanuc.cnc_opdi.number.1", "fanuc.cnc_opdi.sig1.cdata.0", "fanuc.cnc_opdi.sig1.cdata.1")
+@pytest.mark.covers("fanuc.cnc_statinfo")
+@pytest.mark.covers("fanuc.cnc_opdi")
 def test_emergency_stop_is_active_low() -> None:
     control, library, handle = started()
     give(library, handle, 1, 0)
@@ -428,6 +444,7 @@ def test_emergency_stop_is_active_low() -> None:
     ],
 )
 @pytest.mark.covers("fanuc.cnc_opdi.number.9")
+@pytest.mark.covers("fanuc.cnc_opdi")
 def test_mode_select(value: int, mode: str) -> None:
     control = PowerMate()
     library, handle = at(control)
@@ -437,6 +454,7 @@ def test_mode_select(value: int, mode: str) -> None:
 
 
 @pytest.mark.covers("fanuc.cnc_opdi.number.10", "fanuc.cnc_opdi.sig10.255", "fanuc.cnc_opdi.sig10.range")
+@pytest.mark.covers("fanuc.cnc_opdi")
 def test_feed_override_is_the_percentage_itself() -> None:
     control, library, handle = started()
     seen = []
@@ -452,6 +470,7 @@ def test_feed_override_is_the_percentage_itself() -> None:
 @pytest.mark.covers(
     "fanuc.cnc_opdi.number.15", "fanuc.cnc_opdi.sig15.cdata.1", "fanuc.cnc_opdi.sig15.cdata.0"
 )
+@pytest.mark.covers("fanuc.cnc_opdi")
 def test_single_block() -> None:
     control, library, handle = started("G1 X5. F600\nY2.\nZ3.")
     give(library, handle, 15, 1)
@@ -470,6 +489,7 @@ def test_single_block() -> None:
     "fanuc.cnc_opdi.sig7.cdata.1",
 )  # fmt: skip
 @pytest.mark.covers("fanuc.ODBOPDI.axis")
+@pytest.mark.covers("fanuc.ODBOPDI", "fanuc.cnc_opdi")
 def test_jog_feed_of_one_axis_and_of_all() -> None:
     control = PowerMate()
     library, handle = at(control)
@@ -496,6 +516,8 @@ def test_jog_feed_of_one_axis_and_of_all() -> None:
     "bit",
     [pytest.param(bit, marks=pytest.mark.covers(f"fanuc.cnc_opdi.sig4.cdata.bit{bit}")) for bit in range(6)],
 )
+@pytest.mark.covers("fanuc.cnc_incpoint")
+@pytest.mark.covers("fanuc.cnc_opdi")
 def test_an_axis_whose_servo_is_off_does_not_move(bit: int) -> None:
     control = PowerMate(axes=6)
     library, handle = at(control)
@@ -514,6 +536,8 @@ def test_an_axis_whose_servo_is_off_does_not_move(bit: int) -> None:
     "bit",
     [pytest.param(bit, marks=pytest.mark.covers(f"fanuc.cnc_opdi.sig12.cdata.bit{bit}")) for bit in range(6)],
 )
+@pytest.mark.covers("fanuc.cnc_diagnoss")
+@pytest.mark.covers("fanuc.cnc_opdi")
 def test_torque_mode_of_an_axis(bit: int) -> None:
     control = PowerMate(axes=6)
     library, handle = at(control)
@@ -526,6 +550,8 @@ def test_torque_mode_of_an_axis(bit: int) -> None:
 
 @pytest.mark.covers("fanuc.cnc_rdcurrent")
 @pytest.mark.covers("fanuc.cnc_opdi.number.13", "fanuc.cnc_opdi.sig13.axis", "fanuc.cnc_opdi.sig13.formula")
+@pytest.mark.covers("fanuc.cnc_diagnoss")
+@pytest.mark.covers("fanuc.cnc_opdi")
 def test_torque_override_limits_the_current() -> None:
     control, library, handle = started("G0 X900. Y900. Z900.")
     control.advance(200)
@@ -558,6 +584,7 @@ def test_torque_override_limits_the_current() -> None:
         (15, 3, 0, "EW_DATA"),
     ],
 )  # fmt: skip
+@pytest.mark.covers("fanuc.cnc_opdi")
 def test_an_operation_signal_is_refused(number: int, value: int, axis: int, code: str) -> None:
     control, library, handle = started()
     before = control.pmc.read("G", 0, 255)
@@ -570,6 +597,7 @@ def test_an_operation_signal_is_refused(number: int, value: int, axis: int, code
     "fanuc.cnc_opdi.err.EW_BUSY", "fanuc.cnc_exebufstat.err.EW_BUSY", "fanuc.cnc_finstate.err.EW_BUSY",
     "fanuc.cnc_setfin.err.EW_BUSY",
 )  # fmt: skip
+@pytest.mark.covers("fanuc.cnc_exebufstat", "fanuc.cnc_opdi")
 def test_a_busy_control_is_asked_again() -> None:
     control, library, handle = started()
     library.cnc_wropnlgnrl(handle, fwlib.IODBGNRL(type=1, sgnal=1))
@@ -589,6 +617,7 @@ def test_a_busy_control_is_asked_again() -> None:
     assert (give(library, handle, 2, 0), state(control)) == (EW.EW_OK, RunState.HOLD)
 
 
+@pytest.mark.covers("fanuc.cnc_finstate")
 def test_a_snapshot_holds_signals_buffers_and_memory() -> None:
     control = PowerMate()
     library, handle = at(control)

@@ -28,6 +28,8 @@ ALL = 0x1FB9
 
 
 @pytest.mark.covers("fanuc.IODBSGNL.machn_lock.0", "fanuc.IODBSGNL.machn_lock.1")
+@pytest.mark.covers("fanuc.cnc_wropnlsgnl")
+@pytest.mark.covers("fanuc.IODBSGNL", "fanuc.IODBSGNL.machn_lock")
 def test_the_machine_lock_lets_programs_run_without_the_axes() -> None:
     control, library, handle = written(machn_lock=1)
     control.programs.register(7, "O0007\nG1X3.F6000\nG4X0.05\nM30\n")
@@ -68,6 +70,7 @@ def written(**members: int) -> tuple[PowerMate, Any, int]:
         for bit, (name, value) in SIGNALS.items()
     ],
 )  # fmt: skip
+@pytest.mark.covers("fanuc.IODBSGNL", "fanuc.IODBSGNL.type")
 def test_a_bit_selects_its_signal_alone(bit: int, name: str, value: int) -> None:
     control = PowerMate()
     library, handle = at(control)
@@ -89,6 +92,8 @@ def test_a_bit_selects_its_signal_alone(bit: int, name: str, value: int) -> None
     *(f"fanuc.IODBSGNL.type.bit{bit}" for bit in UNUSED),
     *(f"fanuc.IODBSGNL.{element}" for element in ("datano", "hndl_ax", "hndl_mv", "spdl_ovrd")),
 )
+@pytest.mark.covers("fanuc.cnc_wropnlsgnl")
+@pytest.mark.covers("fanuc.IODBSGNL", "fanuc.IODBSGNL.type")
 def test_unused_bits_select_nothing() -> None:
     control = PowerMate()
     library, handle = at(control)
@@ -125,6 +130,8 @@ def test_a_bad_value_writes_nothing(name: str, value: int) -> None:
         for value, aut in enumerate((0, 1, 3, 4, 5, 9))
     ],
 )
+@pytest.mark.covers("fanuc.cnc_statinfo")
+@pytest.mark.covers("fanuc.IODBSGNL", "fanuc.IODBSGNL.mode")
 def test_mode(value: int, aut: int) -> None:
     _, library, handle = written(mode=value)
     assert library.cnc_statinfo(handle)[1].aut == aut
@@ -139,6 +146,7 @@ def test_mode(value: int, aut: int) -> None:
     ],
 )
 @pytest.mark.covers("fanuc.IODBSGNL.rpd_ovrd")
+@pytest.mark.covers("fanuc.IODBSGNL")
 def test_rapid_override(value: int, mm_min: int) -> None:
     control, _, _ = written(rpd_ovrd=value)
     control.programs.memory.create("O0004", b"O0004\nG0 X300.\n")
@@ -162,6 +170,7 @@ JOG_PERCENT = (
     ],
 )
 @pytest.mark.covers("fanuc.IODBSGNL.jog_ovrd")
+@pytest.mark.covers("fanuc.IODBSGNL")
 def test_jog_override(value: int, percent: float) -> None:
     control, _, _ = written(jog_ovrd=value, mode=4)
     control.signals.give(100, 4)
@@ -176,6 +185,7 @@ def test_jog_override(value: int, percent: float) -> None:
         for value in range(21)
     ],
 )
+@pytest.mark.covers("fanuc.IODBSGNL", "fanuc.IODBSGNL.feed_ovrd")
 def test_feed_override(value: int, percent: int) -> None:
     control, _, _ = written(feed_ovrd=value)
     control.programs.memory.create("O0004", b"O0004\nG1 Y90. F450\n")
@@ -198,6 +208,7 @@ PROGRAM = b"O0004\nG1 X2. F600\n/Y3.\nZ4.\n"
     ],
 )
 @pytest.mark.covers("fanuc.IODBSGNL.blck_del")
+@pytest.mark.covers("fanuc.IODBSGNL", "fanuc.IODBSGNL.sngl_blck")
 def test_switches_of_a_program(member: str, value: int, seen: int) -> None:
     control, _, _ = written(**{member: 1 - value})
     control.panel.set({member: value})
@@ -215,6 +226,7 @@ def test_switches_of_a_program(member: str, value: int, seen: int) -> None:
         pytest.param(1, 3000, marks=pytest.mark.covers("fanuc.IODBSGNL.dry_run.1")),
     ],
 )
+@pytest.mark.covers("fanuc.IODBSGNL", "fanuc.IODBSGNL.dry_run")
 def test_dry_run(value: int, mm_min: int) -> None:
     control, _, _ = written(dry_run=1 - value)
     control.panel.set({"dry_run": value})
@@ -228,6 +240,7 @@ def test_dry_run(value: int, mm_min: int) -> None:
 @pytest.mark.covers("fanuc.cnc_wropnlsgnl")
 @pytest.mark.covers("fanuc.IODBSGNL.mem_prtct.0", "fanuc.IODBSGNL.mem_prtct.1")
 @pytest.mark.covers("fanuc.IODBSGNL.mem_prtct")
+@pytest.mark.covers("fanuc.IODBSGNL")
 def test_memory_protection() -> None:
     control, library, handle = written(mem_prtct=1)
     assert control.state.protection_keys == {1, 2, 3, 4}
@@ -236,6 +249,8 @@ def test_memory_protection() -> None:
 
 
 @pytest.mark.covers("fanuc.IODBSGNL.feed_hold.0", "fanuc.IODBSGNL.feed_hold.1")
+@pytest.mark.covers("fanuc.cnc_statinfo")
+@pytest.mark.covers("fanuc.IODBSGNL", "fanuc.IODBSGNL.feed_hold")
 def test_feed_hold_holds_and_keeps_from_starting() -> None:
     control, library, handle = written(feed_hold=0)
     control.programs.memory.create("O0004", b"O0004\nG1 X90. F240\n")
@@ -270,6 +285,7 @@ def test_feed_hold_holds_and_keeps_from_starting() -> None:
     ],
 )  # fmt: skip
 @pytest.mark.covers("fanuc.IODBGNRL.sgnal")
+@pytest.mark.covers("fanuc.IODBGNRL")
 def test_a_general_purpose_signal(bit: int) -> None:
     control = PowerMate()
     library, handle = at(control)
@@ -289,6 +305,7 @@ def test_a_general_purpose_signal(bit: int) -> None:
     "fanuc.cnc_rdopnlgnrl.slct_data.bits15_8", "fanuc.cnc_wropnlgnrl.type.bits15_8",
     "fanuc.cnc_rdopnlgsname.slct_data.bits15_8", "fanuc.IODBRDNA.type.bits15_8",
 )  # fmt: skip
+@pytest.mark.covers("fanuc.IODBRDNA", "fanuc.IODBRDNA.type")
 def test_bits_above_the_eighth_select_nothing() -> None:
     library, handle = at(PowerMate())
     library.cnc_wropnlgnrl(handle, fwlib.IODBGNRL(type=-256, sgnal=0x5A))
@@ -323,6 +340,7 @@ def test_bits_above_the_eighth_select_nothing() -> None:
     "fanuc.IODBRDNA.sgnl7_name",
     "fanuc.IODBRDNA.sgnl8_name",
 )
+@pytest.mark.covers("fanuc.IODBRDNA")
 def test_a_signal_has_a_name_of_eight_characters(bit: int) -> None:
     library, handle = at(PowerMate())
     names = {f"sgnl{k}_name": f"NAME-OF-{k}".encode() for k in range(1, 9)}
@@ -344,6 +362,7 @@ def test_a_signal_has_a_name_of_eight_characters(bit: int) -> None:
 
 
 @pytest.mark.covers("fanuc.cnc_rdopnlgnrl", "fanuc.cnc_rdopnlgsname")
+@pytest.mark.covers("fanuc.cnc_statinfo")
 def test_the_panel_outlasts_switching_off(tmp_path: Path) -> None:
     control = PowerMate(memory=tmp_path / "memory")
     library, handle = at(control)

@@ -12,6 +12,7 @@ from polycnc.controllers.fanuc import PowerMate, fwlib
 from polycnc.controllers.fanuc.device._modes import PowerMateMode
 from polycnc.controllers.fanuc.fwlib import EW
 from polycnc.controllers.fanuc.library._structs import HEADER
+from support.refusals import refused
 
 LETTERS = dict(enumerate("GFYXARTKCD"))
 G, F, Y, X, A, R, T, K, C, D = range(10)
@@ -57,6 +58,7 @@ def test_word_of_the_manual() -> None:
 
 
 @pytest.mark.covers("fanuc.example.pmc_write_bytes", "fanuc.example.pmc_read_bytes")
+@pytest.mark.covers("fanuc.pmc_rdpmcrng")
 def test_bytes_of_the_manual() -> None:
     control = PowerMate()
     library, handle = at(control)
@@ -83,6 +85,7 @@ AREAS = [
         for each in AREAS
     ],
 )
+@pytest.mark.covers("fanuc.pmc_rdpmcrng", "fanuc.pmc_rdpmcrng.err.EW_NUMBER")
 def test_an_area_ends_where_the_manual_says(letter: str, first: int, last: int) -> None:
     library, handle = at(PowerMate())
     kind = "GFYXARTKCD".index(letter)
@@ -152,6 +155,7 @@ def test_protected_addresses_are_not_written(kind: int, first: int, count: int) 
 )
 @pytest.mark.covers("fanuc.pmc_wrpmcrng", "fanuc.pmc_rdpmcrng", "fanuc.pmc.adr_type.9")
 @pytest.mark.covers("fanuc.IODBPMC.type_a", "fanuc.IODBPMC.datano_s", "fanuc.IODBPMC.datano_e")
+@pytest.mark.covers("fanuc.IODBPMC")
 def test_items_of_a_type(data_type: int, last: int, length: int, member: str, values: list[int]) -> None:
     control = PowerMate()
     library, handle = at(control)
@@ -167,24 +171,22 @@ def test_items_of_a_type(data_type: int, last: int, length: int, member: str, va
 
 @pytest.mark.parametrize(
     ("kind", "data_type", "first", "last", "length", "code"),
-    [
-        pytest.param(
-            D, 1, 100, 101, 9, "EW_LENGTH", marks=pytest.mark.covers("fanuc.pmc_rdpmcrng.err.EW_LENGTH")
-        ),
+    refused(
+        "pmc_rdpmcrng",
+        (D, 1, 100, 101, 9, "EW_LENGTH"),
+        (D, 1, 100, 101, 11, "EW_LENGTH"),
         (D, 1, 100, 101, 12, "EW_LENGTH"),
+        (D, 0, 100, 100, 0, "EW_LENGTH"),
         (D, 2, 100, 102, 11, "EW_LENGTH"),
-        pytest.param(
-            D, 0, 101, 100, 9, "EW_NUMBER", marks=pytest.mark.covers("fanuc.pmc_rdpmcrng.err.EW_NUMBER")
-        ),
+        (D, 0, 101, 100, 9, "EW_NUMBER"),
         (G, 0, 255, 1000, 8 + 746, "EW_NUMBER"),
         (A, 0, -1, 0, 10, "EW_NUMBER"),
-        pytest.param(
-            10, 0, 1, 1, 9, "EW_ATTRIB", marks=pytest.mark.covers("fanuc.pmc_rdpmcrng.err.EW_ATTRIB")
-        ),
+        (10, 0, 1, 1, 9, "EW_ATTRIB"),
         (-1, 0, 1, 1, 9, "EW_ATTRIB"),
         (D, 3, 1, 1, 9, "EW_ATTRIB"),
-    ],
+    ),
 )
+@pytest.mark.covers("fanuc.pmc_rdpmcrng")
 def test_reading_is_refused(kind: int, data_type: int, first: int, last: int, length: int, code: str) -> None:
     library, handle = at(PowerMate())
     assert library.pmc_rdpmcrng(handle, kind, data_type, first, last, length)[0] is EW[code]
@@ -193,24 +195,18 @@ def test_reading_is_refused(kind: int, data_type: int, first: int, last: int, le
 @pytest.mark.covers("fanuc.pmc_wrpmcrng")
 @pytest.mark.parametrize(
     ("head", "length", "code"),
-    [
-        pytest.param(
-            (D, 1, 100, 101), 9, "EW_LENGTH", marks=pytest.mark.covers("fanuc.pmc_wrpmcrng.err.EW_LENGTH")
-        ),
-        *(
-            pytest.param(*each, "EW_LENGTH", marks=pytest.mark.covers("fanuc.pmc_wrpmcrng.err.EW_LENGTH"))
-            for each in (((D, 1, 100, 102), 11), ((D, 2, 100, 101), 10), ((D, 2, 100, 105), 14))
-        ),  # no whole words
+    refused(
+        "pmc_wrpmcrng",
+        ((D, 1, 100, 101), 9, "EW_LENGTH"),
+        ((D, 1, 100, 101), 12, "EW_LENGTH"),
+        *(((D, 1, 100, 102), 11, "EW_LENGTH"), ((D, 2, 100, 101), 10, "EW_LENGTH")),  # no whole words
+        ((D, 2, 100, 105), 14, "EW_LENGTH"),
         ((D, 1, 100, 101), 2000, "EW_LENGTH"),
         ((D, 1, 100, 101), 4, "EW_LENGTH"),
-        pytest.param(
-            (D, 0, 1859, 1860), 10, "EW_NUMBER", marks=pytest.mark.covers("fanuc.pmc_wrpmcrng.err.EW_NUMBER")
-        ),
-        pytest.param(
-            (11, 0, 3, 4), 10, "EW_ATTRIB", marks=pytest.mark.covers("fanuc.pmc_wrpmcrng.err.EW_ATTRIB")
-        ),
+        ((D, 0, 1859, 1860), 10, "EW_NUMBER"),
+        ((11, 0, 3, 4), 10, "EW_ATTRIB"),
         ((D, 5, 3, 4), 10, "EW_ATTRIB"),
-    ],
+    ),
 )
 def test_writing_is_refused_and_writes_nothing(head: tuple[int, ...], length: int, code: str) -> None:
     control = PowerMate()
@@ -224,6 +220,7 @@ def test_writing_is_refused_and_writes_nothing(head: tuple[int, ...], length: in
 
 @pytest.mark.covers("fanuc.pmc_rdpmcrng")
 @pytest.mark.covers("fanuc.EW_NOPMC", "fanuc.pmc_rdpmcrng.err.EW_NOPMC", "fanuc.pmc_wrpmcrng.err.EW_NOPMC")
+@pytest.mark.covers("fanuc.pmc_wrpmcrng")
 def test_a_control_without_a_pmc() -> None:
     library, handle = at(PowerMate(options=("custom_macro",)))
     assert library.pmc_rdpmcrng(handle, D, 0, 3, 3, 9)[0] is EW.EW_NOPMC
@@ -235,6 +232,7 @@ def test_a_control_without_a_pmc() -> None:
     "fanuc.ODBPMCINF.adr_attr.bit7", "fanuc.ODBPMCINF.adr_attr.bits6_0",
 )  # fmt: skip
 @pytest.mark.covers("fanuc.ODBPMCINF.datano", "fanuc.ODBPMCINF.info.adr_attr")
+@pytest.mark.covers("fanuc.ODBPMCINF")
 def test_which_addresses_there_are() -> None:
     library, handle = at(PowerMate())
     code, every = library.pmc_rdpmcinfo(handle, -1)
@@ -302,6 +300,7 @@ def test_rapid_override_shows_in_the_speed() -> None:
     [(0, "MDI", 3), (1, "MEM", 5), (3, "EDIT", 6), (4, "HND", 1), (5, "JOG", 2), (6, "T_JOG", 2), (0x85, "REF", None),
      (0x21, "RMT", 4)],
 )  # fmt: skip
+@pytest.mark.covers("fanuc.cnc_statinfo")
 def test_mode_signals_select_the_mode(signals: int, mode: str, lamp: int | None) -> None:
     control = PowerMate()
     library, handle = at(control)

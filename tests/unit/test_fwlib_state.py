@@ -11,6 +11,7 @@ from polycnc.cnc import Answer, Function
 from polycnc.controllers.fanuc import PowerMate, fwlib
 from polycnc.controllers.fanuc.data._configuration import Configuration
 from polycnc.controllers.fanuc.device._modes import PowerMateMode
+from support.refusals import refused
 
 
 def at(control: PowerMate) -> tuple[Any, int]:
@@ -48,6 +49,7 @@ def running(text: str, cycles: int = 5, **more: Any) -> PowerMate:
     "fanuc.ODBSYS.version",
     "fanuc.ODBSYS.axes",
 )
+@pytest.mark.covers("fanuc.ODBSYS")
 def test_system_of_the_manuals_sample() -> None:
     library, handle = at(PowerMate(axes=4))
     code, system = library.cnc_sysinfo(handle)
@@ -57,6 +59,7 @@ def test_system_of_the_manuals_sample() -> None:
 
 @pytest.mark.covers("fanuc.cnc_sysinfo")
 @pytest.mark.covers("fanuc.ODBSYS.mt_type.D")
+@pytest.mark.covers("fanuc.ODBSYS", "fanuc.ODBSYS.mt_type")
 def test_system_of_a_power_mate_d() -> None:
     library, handle = at(PowerMate(model="D", axes=1))
     _, system = library.cnc_sysinfo(handle)
@@ -109,11 +112,26 @@ MODULES: dict[str, tuple[str, dict[int, Any]]] = {
 @pytest.mark.covers(
     "fanuc.ODBSYSC.hdiio", "fanuc.ODBSYSC.posmin", "fanuc.ODBSYSC.sicmin", "fanuc.ODBSYSC.srmmin"
 )
+@pytest.mark.covers(
+    "fanuc.ODBSYSC",
+    "fanuc.ODBSYSC.drmmin",
+    "fanuc.ODBSYSC.frmmin",
+    "fanuc.ODBSYSC.pmcmin",
+    "fanuc.ODBSYSC.submin",
+)
 def test_a_module_has_its_code(element: str, argument: str, module: Any, value: int) -> None:
+    absent = value != -1  # the others: not there while it is, there while it is not
+    others = {
+        name: (argument, modules[-1 if absent else max(modules)])
+        for name, (argument, modules) in MODULES.items()
+        if name != element
+    }
     control = PowerMate()
-    control.configuration = Configuration(**{argument: module})
+    control.configuration = Configuration(**dict(others.values()), **{argument: module})
     library, handle = at(control)
-    assert getattr(library.cnc_sysconfig(handle)[1], element) == value
+    system = library.cnc_sysconfig(handle)[1]
+    codes = {name: -1 if absent else max(MODULES[name][1]) for name in others}
+    assert {name: getattr(system, name) for name in MODULES} == codes | {element: value}
 
 
 @pytest.mark.parametrize(
@@ -129,6 +147,8 @@ def test_a_module_has_its_code(element: str, argument: str, module: Any, value: 
     ],
 )
 @pytest.mark.covers("fanuc.ODBSYSC.sv1min", "fanuc.ODBSYSC.sv3min", "fanuc.ODBSYSC.sv5min")
+@pytest.mark.covers("fanuc.cnc_sysconfig")
+@pytest.mark.covers("fanuc.ODBSYSC")
 def test_servo_modules_are_those_of_the_axes(axes: int, modules: list[int]) -> None:
     library, handle = at(PowerMate(axes=axes))
     system = library.cnc_sysconfig(handle)[1]
@@ -145,6 +165,7 @@ def test_servo_modules_are_those_of_the_axes(axes: int, modules: list[int]) -> N
     "fanuc.ODBSYSC.lad_soft",
     "fanuc.ODBSYSC.mcr_soft",
 )
+@pytest.mark.covers("fanuc.ODBSYSC")
 def test_software_of_the_control() -> None:
     control = PowerMate()
     library, handle = at(control)
@@ -175,6 +196,7 @@ def test_software_of_the_control() -> None:
     ],
 )  # fmt: skip
 @pytest.mark.covers("fanuc.ODBST.aut")
+@pytest.mark.covers("fanuc.ODBST")
 def test_mode(mode: str, value: int) -> None:
     control = PowerMate()
     control.select_mode(mode)
@@ -184,6 +206,8 @@ def test_mode(mode: str, value: int) -> None:
 
 
 @pytest.mark.covers("fanuc.ODBST.aut.2")
+@pytest.mark.covers("fanuc.cnc_statinfo")
+@pytest.mark.covers("fanuc.ODBST", "fanuc.ODBST.aut")
 def test_mode_signals_that_no_mode_has_select_none() -> None:
     control = PowerMate()
     control.signals.give(43, 2)
@@ -202,30 +226,57 @@ def stopped() -> PowerMate:
     return running("M0\nG1 X50. F600", 400)
 
 
+def waiting(cycles: int = 3) -> PowerMate:
+    return running("M8\nG1 X50. F600", cycles, script={(Function.M, 8): Answer(after_s=None)})
+
+
+def held_while_a_function_waits() -> PowerMate:
+    control = waiting()
+    control.feed_hold()
+    control.advance(5)
+    return control
+
+
+STATES: dict[str, tuple[Callable[[], PowerMate], int, int, int]] = {
+    "reset": (PowerMate, 0, 0, 0),
+    "stopped": (stopped, 1, 0, 0),
+    "held": (held, 2, 0, 0),
+    "moving": (lambda: running("G1 X50. F600"), 4, 1, 0),
+    "dwelling": (lambda: running("G4 P3000", 40), 4, 3, 0),
+    "after a function": (lambda: running("M8\nG4 P3000", 40), 4, 3, 0),
+    "at a function": (waiting, 4, 0, 1),
+    "held at a function": (held_while_a_function_waits, 2, 0, 1),
+}
+
+
 @pytest.mark.parametrize(
-    ("element", "value", "setup"),
+    ("setup", "run", "motion", "mstb"),
     [
         pytest.param(
-            element, value, setup,
-            marks=pytest.mark.covers(f"fanuc.ODBST.{element}.{value}"), id=f"{element}-{value}-{k}",
+            *each,
+            marks=pytest.mark.covers(
+                *(
+                    f"fanuc.ODBST.{name}.{value}"
+                    for name, value in zip(("run", "motion", "mstb"), each[1:], strict=True)
+                )
+            ),
+            id=name,
         )
-        for k, (element, value, setup) in enumerate((
-            ("run", 0, PowerMate),
-            ("run", 1, stopped),
-            ("run", 2, held),
-            ("run", 4, lambda: running("G1 X50. F600")),
-            ("motion", 0, held),
-            ("motion", 1, lambda: running("G1 X50. F600")),
-            ("motion", 3, lambda: running("G4 P3000", 40)),
-            ("mstb", 0, lambda: running("M8", 3)),
-            ("mstb", 1, lambda: running("M8", 3, script={(Function.M, 8): Answer(after_s=None)})),
-        ))
+        for name, each in STATES.items()
     ],
-)  # fmt: skip
-@pytest.mark.covers("fanuc.ODBST.mstb")
-def test_state_of_a_program(element: str, value: int, setup: Callable[[], PowerMate]) -> None:
+)
+@pytest.mark.covers("fanuc.ODBST.run", "fanuc.ODBST.motion", "fanuc.ODBST.mstb", "fanuc.cnc_statinfo")
+@pytest.mark.covers(
+    "fanuc.ODBST.emergency.0", "fanuc.ODBST.alarm.0", "fanuc.ODBST.edit.0", "fanuc.ODBST.aut.1"
+)
+@pytest.mark.covers(
+    "fanuc.ODBST", "fanuc.ODBST.alarm", "fanuc.ODBST.aut", "fanuc.ODBST.edit", "fanuc.ODBST.emergency"
+)
+def test_state_of_a_program(setup: Callable[[], PowerMate], run: int, motion: int, mstb: int) -> None:
     library, handle = at(setup())
-    assert getattr(library.cnc_statinfo(handle)[1], element) == value
+    state = library.cnc_statinfo(handle)[1]
+    found = state.aut, state.run, state.motion, state.mstb, state.emergency, state.alarm, state.edit
+    assert found == (1, run, motion, mstb, 0, 0, 0)
 
 
 def test_diagnosis_tells_that_a_function_waits_for_its_answer() -> None:
@@ -242,6 +293,7 @@ def emergency_of(control: PowerMate) -> int:
 
 
 @pytest.mark.covers("fanuc.ODBST.emergency.0", "fanuc.ODBST.emergency.1")
+@pytest.mark.covers("fanuc.ODBST", "fanuc.ODBST.emergency")
 def test_emergency_stop_and_its_release() -> None:
     control = PowerMate()
     control.emergency_stop()
@@ -251,6 +303,7 @@ def test_emergency_stop_and_its_release() -> None:
 
 
 @pytest.mark.covers("fanuc.ODBST.emergency.2")
+@pytest.mark.covers("fanuc.ODBST", "fanuc.ODBST.emergency")
 def test_a_reset_signal_shows_as_reset() -> None:
     control = PowerMate()
     control.signals.give_bits(8, 0x80, 0x80)
@@ -260,6 +313,8 @@ def test_a_reset_signal_shows_as_reset() -> None:
 
 
 @pytest.mark.covers("fanuc.ODBST.alarm.0", "fanuc.ODBST.alarm.1", "fanuc.ODBST.alarm.2", "fanuc.ODBST.alarm")
+@pytest.mark.covers("fanuc.cnc_statinfo")
+@pytest.mark.covers("fanuc.ODBST")
 def test_alarm_and_low_battery() -> None:
     control = PowerMate()
     library, handle = at(control)
@@ -275,6 +330,8 @@ def test_alarm_and_low_battery() -> None:
 
 @pytest.mark.covers("fanuc.cnc_upend")
 @pytest.mark.covers("fanuc.ODBST.edit.3")
+@pytest.mark.covers("fanuc.cnc_statinfo", "fanuc.cnc_upstart")
+@pytest.mark.covers("fanuc.ODBST", "fanuc.ODBST.edit")
 def test_a_program_that_goes_out_shows_as_output() -> None:
     control = PowerMate()
     library, handle = at(control)
@@ -293,6 +350,8 @@ def test_a_program_that_goes_out_shows_as_output() -> None:
     "fanuc.ODBST.edit.5",
     "fanuc.ODBST.edit.6",
 )
+@pytest.mark.covers("fanuc.cnc_statinfo")
+@pytest.mark.covers("fanuc.ODBST")
 def test_edit_state() -> None:
     control = PowerMate()
     library, handle = at(control)
@@ -348,6 +407,8 @@ def signed(bits: int) -> int:
         for bit, number in GROUPS.items()
     ],
 )  # fmt: skip
+@pytest.mark.covers("fanuc.cnc_rdalminfo")
+@pytest.mark.covers("fanuc.ODBALM", "fanuc.ODBALM.data")
 def test_an_alarm_sets_the_bit_of_its_group_and_is_found_by_it(bit: int, number: int) -> None:
     control = PowerMate()
     library, handle = at(control)
@@ -371,6 +432,7 @@ def test_an_alarm_sets_the_bit_of_its_group_and_is_found_by_it(bit: int, number:
     *(f"fanuc.cnc_rdalminfo.alm_type.bit{bit}" for bit in UNUSED),
     "fanuc.cnc_rdalminfo.err.EW_ATTRIB",
 )
+@pytest.mark.covers("fanuc.ODBALM", "fanuc.ODBALM.data")
 def test_unused_bits_are_never_set_and_select_nothing() -> None:
     control = PowerMate()
     library, handle = at(control)
@@ -417,6 +479,7 @@ def test_the_manuals_program_prints_alarms(numbers: tuple[int, ...], printed: li
     "fanuc.ALMINFO.alm.alm_msg",
     "fanuc.ALMINFO.data_end",
 )
+@pytest.mark.covers("fanuc.ALMINFO")
 def test_alarms_with_axis_and_text() -> None:
     control = PowerMate()
     library, handle = at(control)
@@ -437,14 +500,16 @@ def test_alarms_with_axis_and_text() -> None:
 @pytest.mark.covers("fanuc.cnc_rdalminfo")
 @pytest.mark.parametrize(
     ("type_", "length", "code"),
-    [
-        pytest.param(0, 5, "EW_LENGTH", marks=pytest.mark.covers("fanuc.cnc_rdalminfo.err.EW_LENGTH")),
+    refused(
+        "cnc_rdalminfo",
+        (0, 5, "EW_LENGTH"),
         (0, 2, "EW_LENGTH"),
+        (0, 4 + 2 + 1, "EW_LENGTH"),
         (1, 4 + 2, "EW_LENGTH"),
         (1, 2 * 38 + 4, "EW_LENGTH"),
-        pytest.param(2, 6, "EW_NUMBER", marks=pytest.mark.covers("fanuc.cnc_rdalminfo.err.EW_NUMBER")),
+        (2, 6, "EW_NUMBER"),
         (-1, 6, "EW_NUMBER"),
-    ],
+    ),
 )
 def test_alarm_information_is_refused(type_: int, length: int, code: str) -> None:
     library, handle = at(PowerMate())

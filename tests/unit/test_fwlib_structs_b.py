@@ -3,11 +3,16 @@
 from __future__ import annotations
 
 import ctypes
+from pathlib import Path
 from typing import Any
 
 import pytest
 
+from polycnc.conformance import read_rows
 from polycnc.controllers.fanuc import fwlib
+from support.c_elements import is_signed
+
+ROWS = read_rows(Path(__file__).resolve().parents[2] / "conformance")
 
 # fmt: off
 PLACES = [
@@ -214,14 +219,19 @@ def place(name: str, path: str) -> tuple[int, int]:
 
 
 @pytest.mark.parametrize(
-    ("name", "path", "offset", "size"),
+    ("row", "name", "path", "offset", "size"),
     [
-        pytest.param(*each, marks=pytest.mark.covers(f"fanuc.{row}"), id=f"{row}-{each[1]}")
+        pytest.param(row, *each, marks=pytest.mark.covers(f"fanuc.{row}"), id=f"{row}-{each[1]}")
         for row, *each in PLACES
     ],
 )
-def test_an_element_lies_where_the_diagram_shows_it(name: str, path: str, offset: int, size: int) -> None:
+def test_an_element_lies_where_the_diagram_shows_it(
+    row: str, name: str, path: str, offset: int, size: int
+) -> None:
     assert place(name, path) == (offset, size)
+    printed = ROWS[f"fanuc.{row}"].signature
+    if printed.startswith(("short", "long", "unsigned")):
+        assert is_signed(getattr(fwlib, name), path) is not printed.startswith("unsigned")
 
 
 @pytest.mark.parametrize(

@@ -28,6 +28,8 @@ def covers(*rows: str) -> pytest.MarkDecorator:
     "ODBAHIS.s_no", "ODBAHIS.e_no", "ODBAHIS.alm_his.alm_no", "ODBAHIS.alm_his.year", "ODBAHIS.alm_his.month",
     "ODBAHIS.alm_his.day", "ODBAHIS.alm_his.hour", "ODBAHIS.alm_his.minute", "ODBAHIS.alm_his.second",
 )  # fmt: skip
+@pytest.mark.covers("fanuc.cnc_rdalmhistry")
+@pytest.mark.covers("fanuc.ODBAHIS")
 def test_an_alarm_of_the_history_says_when_it_came() -> None:
     control, handle = attached()
     assert fwlib.cnc_clearophis(handle, 1) == OK
@@ -59,6 +61,8 @@ def test_an_alarm_of_the_history_says_when_it_came() -> None:
     "ODBHIS.minute",
     "ODBHIS.second",
 )
+@pytest.mark.covers("fanuc.cnc_rdophistry")
+@pytest.mark.covers("fanuc.ODBHIS")
 def test_records_of_the_operation_history_say_what_was_done_and_when() -> None:
     control, handle = attached()
     control.clock.set_now(AT)
@@ -80,6 +84,8 @@ def test_records_of_the_operation_history_say_what_was_done_and_when() -> None:
 
 @pytest.mark.covers("fanuc.cnc_alarm")
 @covers("ODBALM.data", "ALMINFO.alm.alm_no", "ODBST.alarm")
+@pytest.mark.covers("fanuc.cnc_rdalminfo", "fanuc.cnc_statinfo")
+@pytest.mark.covers("fanuc.ALMINFO", "fanuc.ODBALM", "fanuc.ODBST")
 def test_alarms_as_bits_and_by_number() -> None:
     control, handle = attached()
     assert (fwlib.cnc_alarm(handle)[1].data, fwlib.cnc_statinfo(handle)[1].alarm) == (0, 0)
@@ -93,6 +99,8 @@ def test_alarms_as_bits_and_by_number() -> None:
 
 @pytest.mark.covers("fanuc.cnc_statinfo")
 @covers("ODBST.run", "ODBST.motion", "ODBST.emergency", "ODBST.edit")
+@pytest.mark.covers("fanuc.cnc_dwnstart")
+@pytest.mark.covers("fanuc.ODBST")
 def test_the_state_of_a_control_that_runs_holds_dwells_and_stops() -> None:
     control, handle = attached(axes=1)
     registered(control, O7="\nG1X4.F3000\nG4X0.2\nM30\n")
@@ -132,6 +140,8 @@ PANEL: dict[str, tuple[int, int, Callable[[PowerMate], object], object]] = {
 
 @covers("IODBSGNL.type")
 @pytest.mark.parametrize("name", [pytest.param(each, marks=covers(f"IODBSGNL.{each}")) for each in PANEL])
+@pytest.mark.covers("fanuc.cnc_rdopnlsgnl", "fanuc.cnc_wropnlsgnl")
+@pytest.mark.covers("fanuc.IODBSGNL")
 def test_a_signal_of_the_panel_acts(name: str) -> None:
     bit, value, seen, wanted = PANEL[name]
     control, handle = attached()
@@ -147,6 +157,8 @@ def test_a_signal_of_the_panel_acts(name: str) -> None:
 
 @pytest.mark.covers("fanuc.cnc_wropnlgnrl")
 @covers("IODBGNRL.type")
+@pytest.mark.covers("fanuc.cnc_rdopnlgnrl")
+@pytest.mark.covers("fanuc.IODBGNRL")
 def test_general_purpose_signals_are_chosen_by_their_bits() -> None:
     _, handle = attached()
     assert fwlib.cnc_wropnlgnrl(handle, fwlib.IODBGNRL(type=0x2C, sgnal=0xFF)) == OK
@@ -156,6 +168,8 @@ def test_general_purpose_signals_are_chosen_by_their_bits() -> None:
 
 @pytest.mark.covers("fanuc.pmc_wrpmcrng")
 @covers("IODBPMC.type_a", "IODBPMC.datano_s", "IODBPMC.datano_e")
+@pytest.mark.covers("fanuc.pmc_rdpmcrng")
+@pytest.mark.covers("fanuc.IODBPMC")
 def test_pmc_data_say_what_they_are_of() -> None:
     control, handle = attached()
     control.pmc.write("D", 101, b"\x11\x22\x33")
@@ -171,6 +185,8 @@ def test_pmc_data_say_what_they_are_of() -> None:
 
 @pytest.mark.covers("fanuc.pmc_rdpmcinfo")
 @covers("ODBPMCINF.info.pmc_adr", "ODBPMCINF.info.top_num", "ODBPMCINF.info.last_num")
+@pytest.mark.covers("fanuc.pmc_rdpmcrng", "fanuc.pmc_rdpmcrng.err.EW_NUMBER")
+@pytest.mark.covers("fanuc.ODBPMCINF")
 def test_pmc_areas_have_a_letter_and_ends() -> None:
     _, handle = attached()
     code, found = fwlib.pmc_rdpmcinfo(handle, 7)
@@ -183,6 +199,7 @@ def test_pmc_areas_have_a_letter_and_ends() -> None:
 
 @pytest.mark.covers("fanuc.cnc_wrparam", "fanuc.cnc_rdparam", "fanuc.ALL_AXES")
 @covers("IODBPSD.datano", "IODBPSD.type", "IODBPSD.u.ldata", "IODBPSD.u.ldatas")
+@pytest.mark.covers("fanuc.struct.IODBPSD")
 def test_stroke_limits_are_written_and_read_by_number_and_axis() -> None:
     control, handle = attached()
     assert fwlib.cnc_wrparam(handle, 8, psd(1320, 2, ldata=98_765)) == OK
@@ -195,6 +212,8 @@ def test_stroke_limits_are_written_and_read_by_number_and_axis() -> None:
 
 
 @covers("IODBPSD.u.cdata", "IODBPSD.u.cdatas", "IODBPSD.u.idata", "IODBPSD.u.idatas")
+@pytest.mark.covers("fanuc.cnc_rdparam", "fanuc.cnc_wrparam")
+@pytest.mark.covers("fanuc.struct.IODBPSD")
 def test_parameters_of_bits_and_words_act() -> None:
     control, handle = attached()
     assert fwlib.cnc_wrparam(handle, 5, psd(3202, 0, cdata=0x11)) == OK
@@ -211,6 +230,8 @@ def test_parameters_of_bits_and_words_act() -> None:
 @pytest.mark.covers("fanuc.cnc_wrparas")
 @covers("ODBPARAIF.info.prm_type", "paramtype.two_word", "paramtype.word", "paramtype.byte", "paramtype.bit")
 @pytest.mark.parametrize(("number", "size"), [(3202, 1), (6710, 1), (1410, 2), (6711, 4)])
+@pytest.mark.covers("fanuc.cnc_rdparar")
+@pytest.mark.covers("fanuc.struct.ODBPARAIF")
 def test_types_of_parameters_are_the_bytes_of_their_records(number: int, size: int) -> None:
     control, handle = attached()
     code, info = fwlib.cnc_rdparainfo(handle, number, 1)
@@ -231,6 +252,8 @@ def test_types_of_parameters_are_the_bytes_of_their_records(number: int, size: i
     "ODBDGN.datano", "ODBDGN.u.cdata", "ODBDGN.u.cdatas", "ODBDGN.u.idata", "ODBDGN.u.idatas", "ODBDGN.u.ldata",
     "ODBDGN.u.ldatas",
 )  # fmt: skip
+@pytest.mark.covers("fanuc.cnc_diagnoss")
+@pytest.mark.covers("fanuc.ODBDGN")
 def test_diagnosis_data_of_a_control_that_moves() -> None:
     control, handle = attached()
     registered(control, O7="\nG1X20.Y-10.F3000\nM30\n")
@@ -259,6 +282,7 @@ def test_diagnosis_data_of_a_control_that_moves() -> None:
 )
 @pytest.mark.covers("fanuc.cnc_rdseqnum")
 @covers("ODBDY.pos.faxis.absolute", "ODBDY.pos.faxis.machine", "ODBDY.pos.faxis.relative", "ODBSEQ.data")
+@pytest.mark.covers("fanuc.struct.ODBDY", "fanuc.struct.ODBSEQ")
 def test_positions_of_all_axes_at_once() -> None:
     control, handle = attached()
     control.control.offsets.set("G54", {"X": 2.0, "Y": -1.0})
@@ -277,6 +301,8 @@ def test_positions_of_all_axes_at_once() -> None:
 
 
 @covers("ODBM.datano", "ODBM.mcr_val", "ODBTOFS.datano", "ODBTOFS.type", "ODBTOFS.data", "PRGDIR.prg_data")
+@pytest.mark.covers("fanuc.cnc_rdmacro", "fanuc.cnc_rdprogdir", "fanuc.cnc_rdtofs")
+@pytest.mark.covers("fanuc.struct.ODBM", "fanuc.struct.ODBTOFS", "fanuc.struct.PRGDIR")
 def test_variables_offsets_and_the_directory() -> None:
     control, handle = attached()
     control.macros.set(502, -12.75)
@@ -291,6 +317,8 @@ def test_variables_offsets_and_the_directory() -> None:
 
 
 @covers("ODBMDL.type", "ODBMDL.aux.aux_data", "ODBMDL.aux.flag1", "ODBMDL.raux2")
+@pytest.mark.covers("fanuc.cnc_modal")
+@pytest.mark.covers("fanuc.ODBMDL", "fanuc.ODBMDL.aux")
 def test_modal_data_of_the_block_that_was_asked_for() -> None:
     control, handle = attached()
     registered(control, O7="\nG1X2.5Y-3.F600\nX4.F1200\nM30\n")
@@ -309,6 +337,7 @@ def test_modal_data_of_the_block_that_was_asked_for() -> None:
 
 @pytest.mark.covers("fanuc.cnc_opdi")
 @covers("ODBOPDI.u.cdata")
+@pytest.mark.covers("fanuc.ODBOPDI")
 def test_an_operation_signal_has_the_value_that_is_given() -> None:
     control, handle = attached()
     signal = fwlib.ODBOPDI()
@@ -319,6 +348,8 @@ def test_an_operation_signal_has_the_value_that_is_given() -> None:
 
 
 @covers("ODBSYSC.frmmin", "ODBSYSC.drmmin", "ODBSYSC.pmcmin", "ODBSYSC.submin")
+@pytest.mark.covers("fanuc.cnc_sysconfig")
+@pytest.mark.covers("fanuc.ODBSYSC")
 def test_modules_of_the_control() -> None:
     control, handle = attached()
     control.configuration = Configuration(
@@ -376,6 +407,7 @@ def test_a_call_answers_the_code_of_the_manual(name: str) -> None:
 
 
 @covers("EW_NOOPT")
+@pytest.mark.covers("fanuc.cnc_rdopmsg")
 def test_an_option_that_is_not_fitted_is_refused() -> None:
     control = PowerMate(options=("pmc_axis",))
     fwlib.detach()
@@ -387,6 +419,8 @@ def test_an_option_that_is_not_fitted_is_refused() -> None:
 
 @covers("ODBSYSC.sv3min", "ODBSYSC.sv5min")
 @pytest.mark.parametrize("axes", [1, 2, 3, 4, 5, 6])
+@pytest.mark.covers("fanuc.cnc_sysconfig")
+@pytest.mark.covers("fanuc.ODBSYSC")
 def test_servo_modules_are_there_for_every_pair_of_axes(axes: int) -> None:
     found = fwlib.cnc_sysconfig(attached(axes=axes)[1])[1]
     assert (found.sv3min, found.sv5min) == (0 if axes > 2 else -1, 0 if axes > 4 else -1)
@@ -460,6 +494,33 @@ READS: tuple[Callable[[int], tuple[Any, ...]], ...] = (
     "ODBST.dummy", "ODBALM.dummy", "IODBSGNL.datano", "IODBSGNL.hndl_ax", "IODBSGNL.hndl_mv", "IODBSGNL.spdl_ovrd",
     "IODBGNRL.datano", "IODBRDNA.datano",
 )  # fmt: skip
+@pytest.mark.covers(
+    "fanuc.IODBGNRL",
+    "fanuc.IODBRDNA",
+    "fanuc.IODBSGNL",
+    "fanuc.IODBSIG",
+    "fanuc.ODBAHIS",
+    "fanuc.ODBALM",
+    "fanuc.ODBEXEC",
+    "fanuc.ODBFIN",
+    "fanuc.ODBHIS",
+    "fanuc.ODBHIS.rec_alm",
+    "fanuc.ODBHIS.rec_date",
+    "fanuc.ODBHIS.rec_mdi",
+    "fanuc.ODBHIS.rec_sgn",
+    "fanuc.ODBHIS.rec_time",
+    "fanuc.ODBST",
+    "fanuc.ODBSYS",
+    "fanuc.ODBSYSC",
+    "fanuc.struct.IODBMR",
+    "fanuc.struct.ODBACT",
+    "fanuc.struct.ODBAXIS",
+    "fanuc.struct.ODBDY",
+    "fanuc.struct.ODBM",
+    "fanuc.struct.ODBPRO",
+    "fanuc.struct.ODBSEQ",
+    "fanuc.struct.ODBUP",
+)
 def test_what_the_manual_leaves_unused_is_zero_whatever_the_control_does() -> None:
     control, handle = attached(options=("custom_macro", "pmc_axis", "pmc"))
     control.parameters.set(8003, 1 << 7)

@@ -130,6 +130,7 @@ def test_workpiece_positions_of_other_channels(example: Example) -> None:
 
 
 @pytest.mark.covers("cpl.ex.1556", "cpl.MPOS", "cpl.arg.axissel", "cpl.coord.index.note")
+@pytest.mark.covers("cpl.coord")
 def test_commanded_positions_of_axes(example: Example) -> None:
     example.run("N1 G0 X-7")
     found = example.run(
@@ -143,6 +144,7 @@ def test_commanded_positions_of_axes(example: Example) -> None:
 
 
 @pytest.mark.covers("cpl.ex.1683", "cpl.ex.1712", "cpl.APOS", "cpl.SPOS", "cpl.arg.axissel.phys")
+@pytest.mark.covers("cpl.arg.axissel")
 def test_physical_axes_are_read_from_everywhere(example: Example) -> None:
     example.run("N1 G0 A33.5", channel=3)
     example.run("N1 G0 X2=4.5 Y2=-6", channel=2)
@@ -265,6 +267,7 @@ def test_parameters_have_gaps_where_there_is_no_axis(example: Example) -> None:
 
 
 @pytest.mark.covers("cpl.MCOPS.4", "cpl.MCOPS.6", "cpl.MCODS.32")
+@pytest.mark.covers("cpl.MCODS", "cpl.MCOPS")
 def test_a_channel_selects_starts_and_watches_another(example: Example) -> None:
     example.write("other.npg", "N10 G1 X2=20 F6000\nN20 M30")
     found = example.run(
@@ -280,6 +283,7 @@ def test_a_channel_selects_starts_and_watches_another(example: Example) -> None:
 
 
 @pytest.mark.covers("cpl.MCOPS.7", "cpl.MCOPS.5", "cpl.MCOPS.2", "cpl.MCOPS.4")
+@pytest.mark.covers("cpl.MCOPS")
 def test_a_channel_is_reset_and_changes_its_mode_on_demand(example: Example) -> None:
     example.start("N1 G1 X2=400 F600", channel=2)
     example.pnc.advance(100)
@@ -292,6 +296,7 @@ def test_a_channel_is_reset_and_changes_its_mode_on_demand(example: Example) -> 
 
 
 @pytest.mark.covers("cpl.MCOPS.1", "cpl.MCOPS.2", "cpl.MCOPS.7")
+@pytest.mark.covers("cpl.MCOPS")
 def test_the_rest_of_a_way_is_not_cancelled_by_another_channel(example: Example) -> None:
     example.start("N1 G1 X2=9 F600", channel=2)
     ask = "{0}0 #{1}%=MCOPS(1,{2})\n"
@@ -411,6 +416,7 @@ def test_single_block_stops_behind_each_block(example: Example) -> None:
         )
     ],
 )  # fmt: skip
+@pytest.mark.covers("cpl.SD")
 def test_a_program_is_told_the_mode_of_its_channel(example: Example, mode: Mode, expected: int) -> None:
     other = Mode.AUTOMATIC if mode is Mode.SINGLE_BLOCK else Mode.SINGLE_BLOCK
     example.pnc.select_mode(other, channel=1)
@@ -473,6 +479,7 @@ def test_snapshots_are_taken_between_cpl_programs_and_in_them(example: Example) 
 
 @pytest.mark.covers("cpl.MCODS.3", "cpl.MCODS.87")
 @pytest.mark.covers("cpl.nc.G95", "cpl.nc.M0_M1")
+@pytest.mark.covers("cpl.MCODS")
 def test_feeds_per_revolution_and_program_stops_are_seen(example: Example) -> None:
     example.start("N1 G95 F0.5 S1300 M3\nN2 G1 X4\nN3 M0\nN4 G1 X5")
     read = "1 DIM R(3) : DIM W%(1)\n2 V=0 : #E%=MCODS(3,1,V,R,3) : #F=R(1)\n3 V=0 : #G%=MCODS(87,1,V,W%,1) : #W%=W%(1)"
@@ -606,6 +613,7 @@ N70 G1 Z[WHO%]
 @pytest.mark.parametrize(
     ("mode", "seen"), [(Mode.AUTOMATIC, (11, 1)), (Mode.SINGLE_BLOCK, (10, 0)), (Mode.PROGRAM_BLOCK, (10, 2))]
 )
+@pytest.mark.covers("cpl.SD", "cpl.SDR")
 def test_a_block_is_searched_through_statements(example: Example, mode: Mode, seen: tuple[int, int]) -> None:
     """Three moves of 2, 4 and 6 mm and one of 1.5 in a sub-program stand before N50; nothing of them is moved."""
     example.run("1 @5=0")
@@ -649,6 +657,7 @@ def test_searches_that_come_to_nothing_leave_the_program_at_its_beginning(exampl
 
 @pytest.mark.covers("cpl.MCOPS.4", "cpl.MCOPS.6")
 @pytest.mark.covers("cpl.MCOPS.3")
+@pytest.mark.covers("cpl.MCOPS")
 def test_a_program_has_another_channel_search_a_block(example: Example) -> None:
     example.write("other.npg", "1 A=4\nN10 G91 G1 X2=[A] F6000\nN20 X2=[A]\nN30 Y2=[A]")
     found = example.run(
@@ -666,6 +675,7 @@ SENSES = " : ".join(
 
 
 @pytest.mark.covers("cpl.SD.12.val.19", "cpl.SD.12.1", "cpl.SD.12.2", "cpl.MCODS.63.val.6", "cpl.MCODS.63")
+@pytest.mark.covers("cpl.MCODS", "cpl.SD")
 def test_an_oriented_spindle_is_told(tmp_path: Path) -> None:
     machine = tmp_path / "spindle.toml"
     machine.write_text(
@@ -701,6 +711,7 @@ def test_an_oriented_spindle_is_told(tmp_path: Path) -> None:
     )),
     "cpl.SDR.2.1", "cpl.SDR.2.3", "cpl.SDR.202.s",
 )  # fmt: skip
+@pytest.mark.covers("cpl.SD", "cpl.SDR")
 def test_system_data_are_those_of_the_running_control(example: Example) -> None:
     example.pnc.control.set_overrides(feed=0.85, spindle=0.5)
     example.pnc.control.set_switches(machine_lock=True)

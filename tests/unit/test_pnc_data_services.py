@@ -86,6 +86,7 @@ def test_programs_read_setpoints_by_spos_and_actual_values_by_apos(lagging: Livi
 
 
 @pytest.mark.covers("cpl.MCODS.4", "cpl.MCODS.35", "cpl.MCODS.38", "cpl.MCODS.75", "cpl.MCODS.72")
+@pytest.mark.covers("cpl.MCODS")
 def test_setpoints_actual_values_and_lag_are_told_apart(lagging: Living) -> None:
     x, z = lagging.pnc.axes["X"], lagging.pnc.axes["Z"]
     assert x.setpoint > x.actual + 3 > 9
@@ -102,7 +103,8 @@ def test_setpoints_actual_values_and_lag_are_told_apart(lagging: Living) -> None
 @pytest.mark.covers(
     "cpl.cs.WCS", "cpl.cs.BCS", "cpl.cs.ACS", "cpl.cs.MCS", "cpl.MCODS.71", "cpl.MCODS.72", "cpl.MCODS.73"
 )
-@pytest.mark.covers("cpl.MCODS.74", "cpl.SPOS", "cpl.WPOS", "cpl.MPOS", "cpl.MCODS.37")
+@pytest.mark.covers("cpl.MCODS.74", "cpl.SPOS", "cpl.WPOS", "cpl.MPOS", "cpl.APOS", "cpl.MCODS.37")
+@pytest.mark.covers("cpl.MCODS")
 def test_each_system_of_coordinates_has_its_shifts(lagging: Living) -> None:
     """The shifts of axes lie between machine and axis coordinates, the length before the workpiece's."""
     x, z = lagging.pnc.axes["X"].setpoint, lagging.pnc.axes["Z"].setpoint
@@ -114,6 +116,9 @@ def test_each_system_of_coordinates_has_its_shifts(lagging: Living) -> None:
     assert (functions["WPOS"]("X"), functions["WPOS"](2)) == pytest.approx(wanted[71])
     assert (functions["MPOS"](1), functions["MPOS"]("Z")) == pytest.approx(wanted[74])
     assert (functions["SPOS"](1), functions["SPOS"]("Z")) == pytest.approx(wanted[74])
+    actual = lagging.pnc.axes["X"].actual, lagging.pnc.axes["Z"].actual
+    assert (functions["APOS"]("X"), functions["APOS"](2)) == pytest.approx(actual)
+    assert abs(actual[0] - x) > 0.1
 
 
 @cases(
@@ -136,6 +141,7 @@ def test_each_system_of_coordinates_has_its_shifts(lagging: Living) -> None:
     Case(48, -1, [5, 5, 0, 5, 5, 0, 0], ("31.val.0",)),
     Case(9, 2, [-1], ("9.val.-1",)),
 )
+@pytest.mark.covers("cpl.MCODS", "cpl.MCODS.31")
 def test_ends_compensations_and_what_stands(lagging: Living, case: Case) -> None:
     assert close(case.read(lagging), case.expected)
 
@@ -148,6 +154,7 @@ def test_what_is_never_there_is_0(lagging: Living) -> None:
 
 
 @pytest.mark.covers("cpl.MCODS.3.elem.1", "cpl.MCODS.3.elem.2", "cpl.MCODS.3.elem.3", "cpl.MCODS.3")
+@pytest.mark.covers("cpl.MCODS")
 def test_path_feeds_are_asked_for_present_and_allowed(lagging: Living) -> None:
     """F60000 with 60 % is 36000; X, which has 30000, takes 305.5 of the 327.1 mm of the path."""
     feed = lagging.pnc.status().channel.feed
@@ -159,6 +166,7 @@ def test_path_feeds_are_asked_for_present_and_allowed(lagging: Living) -> None:
 @pytest.mark.covers(
     *(f"cpl.MCODS.cat.{each.replace(' ', '_')}" for each in OVERVIEW if each != "Coordinates")
 )
+@pytest.mark.covers("cpl.MCODS")
 def test_the_control_answers_whatever_the_overview_lists(lagging: Living) -> None:
     """34 is reserved, and there are no data of a customer; everything else is answered, and as what it is."""
     listed = {
@@ -201,6 +209,7 @@ def back(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Living]:
     "cpl.MCODS.1", "cpl.MCODS.2", "cpl.MCODS.4", "cpl.MCODS.6", "cpl.MCODS.6.val.0", "cpl.MCODS.6.val.1"
 )
 @pytest.mark.covers("cpl.MCODS.79", "cpl.MCODS.35", "cpl.MCODS.47")
+@pytest.mark.covers("cpl.MCODS")
 def test_positions_of_axes_that_lag_behind_on_their_way_back(back: Living) -> None:
     x, z = back.pnc.axes["X"], back.pnc.axes["Z"]
     assert (x.setpoint < x.actual - 1, z.setpoint < z.actual - 0.4) == (True, True)
@@ -217,6 +226,7 @@ def test_positions_of_axes_that_lag_behind_on_their_way_back(back: Living) -> No
 
 
 @pytest.mark.covers("cpl.MCODS.1")
+@pytest.mark.covers("cpl.MCODS")
 def test_a_shift_of_a_block_to_come_is_not_shown_yet(tmp_path: Path) -> None:
     living = six(tmp_path)
     living.start("N1 G1 X10 F60000\nN2 G92 X4\nN3 G1 X30\nN4 G4 F2\n", 20)
@@ -249,11 +259,13 @@ def test_a_shift_that_another_takes_back_is_shown(tmp_path: Path) -> None:
     Case(9, 2, [-1], ("9.val.-1",)),
     Case(15, 1, [4, 0, 0, 0, 0, 0, 0, 0, 0]),
 )
+@pytest.mark.covers("cpl.MCODS")
 def test_tables_and_lengths_are_those_that_were_selected(back: Living, case: Case) -> None:
     assert close(case.read(back), case.expected)
 
 
 @pytest.mark.covers("cpl.MCODS.6", "cpl.MCODS.6.val.1", "cpl.MCODS.79", "cpl.MCODS.9.val.-1", "cpl.MCODS.9")
+@pytest.mark.covers("cpl.MCODS")
 def test_an_axis_is_in_position_within_its_window(tmp_path: Path) -> None:
     living = six(tmp_path, LAGGING, servo=True)
     living.start("N1 G1 X2 F6000\nN2 G4 F3\nN3 H3\nN4 G4 F1", 20)
@@ -291,6 +303,7 @@ def nine(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Living]:
     Case(52, 1, [1.5, 3.5, 5.5, 7.5, 9.5, 11.5, 13.5, 15.5], tuple(f"52.elem.{n}" for n in range(1, 9))),
     Case(54, 1, [5.5, 31, 11, 21, 45.5, 3], tuple(f"54.elem.{n}" for n in range(1, 7))),
 )
+@pytest.mark.covers("cpl.MCODS")
 def test_external_and_general_compensations_in_force(nine: Living, case: Case) -> None:
     assert close(case.read(nine), case.expected)
 
@@ -299,6 +312,7 @@ def test_external_and_general_compensations_in_force(nine: Living, case: Case) -
 @pytest.mark.parametrize(
     "kind", [pytest.param(each, marks=pytest.mark.covers(f"cpl.MCODS.54.type.{each}")) for each in range(5)]
 )
+@pytest.mark.covers("cpl.MCODS")
 def test_the_kind_of_tool_is_that_of_the_compensation(nine: Living, kind: int) -> None:
     nine.pnc.system.tools.values[347, 6] = float(kind)
     assert nine.read(54, 1, 6)[5] == kind
@@ -307,8 +321,18 @@ def test_the_kind_of_tool_is_that_of_the_compensation(nine: Living, kind: int) -
 
 
 @pytest.mark.covers(
-    "cpl.MCODS.51", "cpl.MCODS.52", "cpl.MCODS.54", "cpl.MCODS.refresh.S", "cpl.MCODS.refresh"
+    "cpl.MCODS.51",
+    "cpl.MCODS.52",
+    "cpl.MCODS.54",
+    "cpl.MCODS.refresh.S",
+    "cpl.MCODS.refresh",
+    *(
+        f"cpl.MCODS.{number}.elem.{n}"
+        for number, last in ((51, 2), (52, 8), (54, 6))
+        for n in range(1, last + 1)
+    ),
 )
+@pytest.mark.covers("cpl.MCODS")
 def test_data_of_blocks_are_new_with_the_next_block(nine: Living) -> None:
     first = nine.read(52, 1, 8)
     nine.pnc.advance(3)
@@ -331,6 +355,7 @@ def test_data_of_blocks_are_new_with_the_next_block(nine: Living) -> None:
     "cpl.MCODS.87",
     "cpl.MCODS.refresh",
 )
+@pytest.mark.covers("cpl.MCODS")
 def test_an_auxiliary_function_waits_until_the_plc_acknowledges_it(tmp_path: Path) -> None:
     living = six(tmp_path, script={(Function.M, 27): Answer(after_s=0.06)})
     living.start("N1 G1 X1 F6000\nN2 M27\nN3 X2\n", 3)
@@ -360,6 +385,7 @@ def test_an_auxiliary_function_waits_until_the_plc_acknowledges_it(tmp_path: Pat
     ],
 )
 @pytest.mark.covers("cpl.MCODS.63")
+@pytest.mark.covers("cpl.MCODS")
 def test_a_spindle_turns_with_or_without_coolant(tmp_path: Path, words: str, value: int) -> None:
     living = six(tmp_path)
     one_each = "".join(f"N{place} {word}\n" for place, word in enumerate(words.split(), 2))
@@ -372,6 +398,7 @@ def test_a_spindle_turns_with_or_without_coolant(tmp_path: Path, words: str, val
 
 @pytest.mark.covers("cpl.MCOPS.6")
 @pytest.mark.covers("cpl.ncs.5", "cpl.MCODS.26", "cpl.MCODS.26.val.0", "cpl.MCODS.26.val.1", "cpl.MCODS.80")
+@pytest.mark.covers("cpl.MCODS", "cpl.MCOPS")
 def test_axes_are_referenced_before_a_program_starts(tmp_path: Path) -> None:
     machine = 'name = "three"\n' + "".join(AXIS.format(name, 400) for name in "XYZ")
     living = Living(tmp_path, machine, [("X", "Z"), ("Y",)], references=True)
@@ -405,6 +432,7 @@ def test_axes_are_referenced_before_a_program_starts(tmp_path: Path) -> None:
     "cpl.MCODS.18",
     "cpl.MCODS.43",
 )
+@pytest.mark.covers("cpl.MCODS")
 def test_channels_of_rotary_axes_of_none_and_axes_of_no_channel(tmp_path: Path) -> None:
     axes = AXIS.format("X", 400), ROTARY.format("C"), AXIS.format("U", 300), AXIS.format("Y", 90)
     machine = 'name = "four"\n' + "".join(axes)
@@ -425,6 +453,7 @@ def test_channels_of_rotary_axes_of_none_and_axes_of_no_channel(tmp_path: Path) 
 
 @pytest.mark.covers("cpl.MCOPS.6", "cpl.MCODS.7")
 @pytest.mark.covers("cpl.ncs.100", "cpl.ncs.101", "cpl.ncs.return")
+@pytest.mark.covers("cpl.MCODS", "cpl.MCOPS")
 def test_a_program_is_told_that_the_coupling_is_broken_or_strange(tmp_path: Path) -> None:
     living = six(tmp_path)
     stranger = Coupling(living.pnc.ncs, magic=4711)

@@ -225,6 +225,7 @@ def test_warnings_of_a_program_are_kept_until_a_reset(panel: Panel) -> None:
 
 @pytest.mark.covers("cpl.MCOPS.2")
 @pytest.mark.covers("cpl.sig.IF_0.2")
+@pytest.mark.covers("cpl.MCOPS")
 def test_a_reset_is_signalled_until_the_channel_has_a_new_job(panel: Panel) -> None:
     assert panel.run("1 #A?=IC(2,3,2)")["#A?"] is False
     found = panel.run("10 #B?=IC(2,3,2) : #A%=MCOPS(2,2)\n20 WAIT(IC(2,3,2)=TRUE,300,#W%)\n30 #C?=IC(2,3,1)")
@@ -235,6 +236,7 @@ def test_a_reset_is_signalled_until_the_channel_has_a_new_job(panel: Panel) -> N
 
 @pytest.mark.covers("cpl.MCOPS.7")
 @pytest.mark.covers("cpl.sig.NC-I_3.0")
+@pytest.mark.covers("cpl.MCOPS")
 def test_the_mode_is_fixed_while_the_plc_sets_it(panel: Panel) -> None:
     bit = Signals.CHANNEL_INPUTS, 2, 24
     panel.pnc.system.interface.set_bit(*bit, True)
@@ -263,6 +265,7 @@ def test_a_channel_is_ready_when_a_start_would_begin_or_go_on(panel: Panel) -> N
 
 @pytest.mark.covers("cpl.MCODS.5")
 @pytest.mark.covers("cpl.nc.G196")
+@pytest.mark.covers("cpl.MCODS")
 def test_the_cutting_velocity_is_told_while_g196_holds(panel: Panel) -> None:
     found = panel.run(
         "N1 G196 S125 M3\nN2 G1 X3 F600\n3 WAIT\n4 DIM R(2) : V=0 : E%=MCODS(5,-1,V,R,1) : #A=R(1)\nN5 M5\n6 WAIT\n"

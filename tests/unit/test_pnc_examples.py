@@ -44,6 +44,7 @@ def run(living: Living, program: str, cycles: int = 3000, channel: int = 1) -> d
 
 @pytest.mark.covers("cpl.MCODS.32", "cpl.MCODS.39")
 @pytest.mark.covers("cpl.ex.3234", "cpl.ncs.return", "cpl.MCODS.constants", "cpl.MCODS.buffertype")
+@pytest.mark.covers("cpl.MCODS")
 def test_states_of_another_channel_are_read_at_once(two: Living) -> None:
     two.start("N1 G1 U300 F600\n", 40, channel=2)
     found = run(
@@ -71,6 +72,7 @@ def test_states_of_another_channel_are_read_at_once(two: Living) -> None:
         ("E%=MCODS(32,1,V,T$,2)", "INVALID PARAMETER"),
     ],
 )
+@pytest.mark.covers("cpl.MCODS")
 def test_a_variable_that_does_not_fit_stops_the_program(two: Living, line: str, what: str) -> None:
     two.write("main1", f"10 V=0 : W%=0 : DIM B(3) : DIM T$(9)\n20 {line}\n30 #A%=1\n")
     two.pnc.select_program("main1")
@@ -84,6 +86,7 @@ def test_a_variable_that_does_not_fit_stops_the_program(two: Living, line: str, 
 
 @pytest.mark.covers("cpl.MCODS.32")
 @pytest.mark.covers("cpl.ex.3251")
+@pytest.mark.covers("cpl.MCODS")
 def test_a_loop_ends_when_the_other_channel_is_inactive(two: Living) -> None:
     two.start("N1 G1 U3 F6000\nN2 M0\nN3 U5\n", 3, channel=2)
     two.start(
@@ -102,6 +105,7 @@ def test_a_loop_ends_when_the_other_channel_is_inactive(two: Living) -> None:
 
 @pytest.mark.covers("cpl.MCODS.33", "cpl.MCODS.45")
 @pytest.mark.covers("cpl.ex.3257")
+@pytest.mark.covers("cpl.MCODS")
 def test_names_of_the_axes_are_listed(two: Living) -> None:
     two.start(
         "30 VERSION=0\n40 DIM AXNAME$(512)\n60 ERR=MCODS(33,-1,VERSION,AXNAME$,512)\n70 IF ERR=0 THEN\n"
@@ -122,6 +126,7 @@ def test_names_of_the_axes_are_listed(two: Living) -> None:
 
 
 @pytest.mark.covers("cpl.ex.3298", "cpl.MCODS.87")
+@pytest.mark.covers("cpl.MCODS")
 def test_waiting_states_are_told_apart_by_masks(two: Living) -> None:
     two.start("N1 G1 U3 F6000\nN2 U90\n", 30, channel=2)
     two.pnc.control.set_overrides(feed=0.0, channel=1)
@@ -160,6 +165,7 @@ def test_axes_of_the_own_channel_go_to_0_and_to_its_number(two: Living) -> None:
 
 @pytest.mark.covers("cpl.MCOPS.4", "cpl.MCOPS.3", "cpl.MCOPS.6")
 @pytest.mark.covers("cpl.ex.3200", "cpl.ex.3175", "cpl.ex.3201", "cpl.MCODS.constants")
+@pytest.mark.covers("cpl.MCODS", "cpl.MCOPS")
 def test_programs_are_selected_searched_and_started(two: Living) -> None:
     found = run(two, '10 #A%=MCOPS(4,2,"sect.cnc","N50","N100",1)\n20 N%=6 : C%=2 : #B%=MCOPS(N%,C%)\n')
     two.until_over(2)
@@ -177,6 +183,7 @@ def test_programs_are_selected_searched_and_started(two: Living) -> None:
 @pytest.mark.covers(
     "cpl.ex.3202", "cpl.ex.3228", "cpl.ex.3209", "cpl.ex.3165", "cpl.MCOPS.7", "cpl.MCOPS.7.mode.4"
 )
+@pytest.mark.covers("cpl.MCOPS")
 def test_blocks_by_hand_leaving_and_resetting(two: Living) -> None:
     shown = two.pnc.system.shown
     found = run(two, '10 #A%=MCOPS(7,2,4)\n20 #B%=MCOPS(4,2,"F6000G1U5",,,32)\n30 #C%=MCOPS(6,2)\n')
@@ -202,6 +209,7 @@ ONE_BLOCK = (6, 7, 10, 12)
 @pytest.mark.parametrize(
     "mode", [pytest.param(mode, marks=pytest.mark.covers(f"cpl.MCOPS.7.mode.{mode}")) for mode in SELECTED]
 )
+@pytest.mark.covers("cpl.MCODS", "cpl.MCOPS")
 def test_the_mode_is_selected_by_its_number_and_blocks_stop_as_it_says(two: Living, mode: int) -> None:
     found = run(two, f"10 #A%=MCOPS(7,2,{mode})\n20 DIM B%(1) : V=0 : E=MCODS(31,2,V,B%,1) : #B%=B%(1)\n")
     assert (found["#A%"], found["#B%"]) == (0, mode)
@@ -239,6 +247,7 @@ WHERE = {1: "start", 3: "break"}
         for how, where in ((1, 3), (2, 1), (3, 2), (1, 2), (3, 1))
     ],
 )
+@pytest.mark.covers("cpl.MCODS")
 def test_the_strategy_of_the_return_is_that_of_the_channel(two: Living, how: int, where: int) -> None:
     read = "20 DIM B%(3) : DIM C%(3)\n30 V=0 : E=MCODS(46,2,V,B%,3) : V=0 : E=MCODS(46,1,V,C%,3)\n"
     shown = "40 #B%=B%(1)*100+B%(2)*10+B%(3) : #C%=C%(1)*100+C%(2)*10+C%(3)\n"
@@ -297,6 +306,49 @@ def test_a_program_waits_until_its_client_answers_and_goes_on_with_its_values(tw
     found = two.pnc.variables()
     assert [found[name] for name in ("#I%", "#INT%", "#REAL", "#LEN%")] == [0, 2, 2.75, 5]
     assert two.pnc.axes["X"].setpoint == 2.75
+
+
+@pytest.mark.covers("cpl.MMC")
+def test_at_most_20_variables_are_sent(two: Living) -> None:
+    sent: list[int] = []
+
+    def client(variables: Sequence[Sent]) -> bool:
+        sent.append(len(variables))
+        return True
+
+    two.pnc.system.clients.client = client
+    some = ",".join(f"V{k}" for k in range(20))
+    assert run(two, f"10 #I%=MMC({some})\n", 50)["#I%"] == 0
+    two.start("10 #A%=MMC(V0)\n20 #B%=1\n", 50)
+    two.write("many", f"10 #C%=MMC({some},V20)\n")
+    two.pnc.select_program("many")
+    two.pnc.cycle_start()
+    two.pnc.advance(5)
+    assert sent == [20, 1]
+    assert two.pnc.status().alarms[0].text.startswith("many:1:")
+
+
+@pytest.mark.covers("cpl.SD.8", "cpl.changed.SD_8", "cpl.err.SDR_AXIS", "cpl.SDR")
+@pytest.mark.covers("cpl.SD")
+def test_each_channel_has_its_number_and_its_axes(two: Living) -> None:
+    for channel in (2, 1):
+        assert run(two, "10 #A%=SD(8) : #B=SDR(1,2)\n", 50, channel)["#A%"] == channel
+        two.write("wrong", "10 #C=SDR(1,3)\n")
+        two.pnc.select_program("wrong", channel=channel)
+        two.pnc.cycle_start(channel=channel)
+        two.pnc.advance(5)
+        assert "INVALID PARAMETER" in two.pnc.status().alarms[0].text
+        two.pnc.reset(channel=channel)
+        two.pnc.advance(1)
+
+
+@pytest.mark.covers("cpl.MCODS.48", "cpl.MCODS.31", "cpl.MCODS.31.val.4", "cpl.MCODS.31.val.5")
+@pytest.mark.covers("cpl.MCODS")
+def test_axes_have_the_mode_of_their_channel(two: Living) -> None:
+    assert run(two, "10 #E%=MCOPS(7,2,4)\n", 50)["#E%"] == 0
+    assert [two.read(31, 1), two.read(31, 2)] == [[5], [4]]
+    assert two.read(48, -1, 5) == [5, 5, 0, 4, 4]
+    assert [two.read(48, 1, 2), two.read(48, 2, 2)] == [[5, 5], [4, 4]]
 
 
 @pytest.mark.covers("cpl.MMC.ret.2", "cpl.MMC")

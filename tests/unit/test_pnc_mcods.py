@@ -118,6 +118,7 @@ def fresh(tmp_path: Path) -> Iterator[Living]:
 
 
 @pytest.mark.parametrize("case", [marked(case) for case in MOVING])
+@pytest.mark.covers("cpl.MCODS", "cpl.MCODS.refresh")
 def test_data_of_a_control_in_motion(middle: Living, case: Case) -> None:
     expected = case.expected(middle) if callable(case.expected) else case.expected
     found = middle.read(case.number, case.channel, case.size, *case.extra)
@@ -126,6 +127,7 @@ def test_data_of_a_control_in_motion(middle: Living, case: Case) -> None:
 
 @pytest.mark.covers("cpl.MCODS.3")
 @pytest.mark.covers("cpl.MCODS.47", "cpl.MCODS.47.val.0", "cpl.MCODS.47.val.1")
+@pytest.mark.covers("cpl.MCODS")
 def test_an_axis_travels_whichever_way_it_goes(fresh: Living) -> None:
     fresh.start("N1 G1 F6000 X-60 C-30\nM30\n", 300)
     assert (fresh.pnc.axes["X"].velocity < 0.0, fresh.read(47, 1, 3)) == (True, [1, 0, 1])
@@ -139,6 +141,7 @@ def test_an_axis_travels_whichever_way_it_goes(fresh: Living) -> None:
 @pytest.mark.covers(
     "cpl.MCODS.2", "cpl.MCODS.62", "cpl.MCODS.62.val.-2147483648", "cpl.MCODS.83", "cpl.MCODS.76"
 )
+@pytest.mark.covers("cpl.MCODS")
 def test_whole_numbers_ends_and_what_is_left(middle: Living) -> None:
     x, c = middle.pnc.axes["X"], middle.pnc.axes["C"]
     assert middle.read(2, -1, 1) == [round(x.setpoint * 10_000)]
@@ -156,6 +159,7 @@ def test_whole_numbers_ends_and_what_is_left(middle: Living) -> None:
 
 @pytest.mark.covers("cpl.MCODS.31", "cpl.MCODS.55", "cpl.MCODS.56")
 @pytest.mark.covers("cpl.MCODS.34", "cpl.MCODS.42", "cpl.ncs.102", "cpl.ncs.1", "cpl.ncs.24", "cpl.ncs.18")
+@pytest.mark.covers("cpl.MCODS")
 def test_what_the_control_does_not_have_is_refused(middle: Living) -> None:
     assert [
         middle.read(34, -1),
@@ -247,6 +251,7 @@ CHANGES = [
         for case in CHANGES
     ],
 )
+@pytest.mark.covers("cpl.MCODS")
 def test_a_change_is_seen_by_who_asks_and_ends_the_wait_of_who_asked(fresh: Living, case: Change) -> None:
     fresh.start("N1 G71 G0 X0\n", 20)
     assert fresh.read(case.number, case.channel, case.size) == case.before
@@ -258,6 +263,7 @@ def test_a_change_is_seen_by_who_asks_and_ends_the_wait_of_who_asked(fresh: Livi
 @pytest.mark.covers(
     "cpl.MCODS.5", "cpl.MCODS.25", "cpl.MCODS.36", "cpl.MCODS.63.val.5", "cpl.MCODS.8", "cpl.MCODS.63"
 )
+@pytest.mark.covers("cpl.MCODS")
 def test_a_spindle_that_stands_keeps_the_speed_that_was_programmed(fresh: Living) -> None:
     fresh.start("N1 S900 M3\nN2 G4 F0.2\nN3 M5\nN4 G4 F9\n", 100)
     fresh.pnc.control.set_overrides(spindle=0.9)
@@ -306,6 +312,7 @@ SCENES = [
         for place, each in enumerate(SCENES, 1)
     ],
 )
+@pytest.mark.covers("cpl.MCODS")
 def test_services_answer_in_scenes_of_their_own(fresh: Living, scene: Scene) -> None:
     fresh.write("main1", scene.program)
     fresh.pnc.select_program("main1")
@@ -327,6 +334,7 @@ def test_services_answer_in_scenes_of_their_own(fresh: Living, scene: Scene) -> 
     "cpl.MCODS.62", "cpl.MCODS.30", "cpl.MCODS.32", "cpl.MCODS.32.sav.11", "cpl.MCODS.32.sav.1"
 )
 @pytest.mark.covers("cpl.MCODS.32.elem.1", "cpl.MCODS.32.elem.2")
+@pytest.mark.covers("cpl.MCODS")
 def test_speeds_of_drives_and_what_is_selected(fresh: Living) -> None:
     assert (fresh.glance(32, 1, 2), fresh.glance(30, 1, 9)) == ([1, 3], "")
     fresh.write("main1", "N1 G1 X-60 C-3 F6000\n")

@@ -94,6 +94,7 @@ def again(tmp_path: Path) -> Iterator[Two]:
     ],
 )
 @pytest.mark.parametrize("at_once", [True, False])
+@pytest.mark.covers("cpl.MCODS")
 def test_a_part_of_a_program_is_selected_and_machined(
     two: Two, name: str, start: str, end: str, code: int, x2: float, seen: int | None, at_once: bool
 ) -> None:
@@ -111,14 +112,15 @@ def test_a_part_of_a_program_is_selected_and_machined(
 
 @pytest.mark.covers("cpl.MCOPS.3", "cpl.MCOPS.4", "cpl.MCOPS.6")
 @pytest.mark.covers(
-    "cpl.ncs.10", "cpl.ncs.15", "cpl.ncs.2", "cpl.ncs.8", "cpl.MCODS.32.sav.3", "cpl.MCODS.32"
+    "cpl.ncs.10", "cpl.ncs.11", "cpl.ncs.15", "cpl.ncs.2", "cpl.ncs.8", "cpl.MCODS.32.sav.3", "cpl.MCODS.32"
 )
+@pytest.mark.covers("cpl.MCODS", "cpl.MCOPS")
 def test_a_search_is_refused_where_it_cannot_be(two: Two) -> None:
     two.write("STOPS", "N1 G1 X2=1 F6000\nN2 M0\nN3 X2=2\n")
     assert two.ask('MCOPS(3,2,"N3")', 'MCOPS(4,2,"STOPS")', "MCOPS(6,2)", 'MCOPS(3,2,"N3")') == [10, 0, 0, 2]
     two.after()
     assert two.pnc.run_state(2) is RunState.PROGRAM_STOP
-    assert two.ask('MCOPS(3,2,"N3")', 'MCOPS(3,3,"N3")') == [15, 1]
+    assert two.ask('MCOPS(3,2,"N3")', 'MCOPS(3,3,"N3")', 'MCOPS(4,2,"PART")') == [15, 1, 11]
     assert two.ask("MCOPS(6,2)") == [0]
     two.after()
     assert two.x2() == 2
@@ -136,6 +138,7 @@ def test_a_search_is_refused_where_it_cannot_be(two: Two) -> None:
     "cpl.MCOPS.4",
     "cpl.MCODS.32",
 )
+@pytest.mark.covers("cpl.MCODS", "cpl.MCOPS")
 def test_a_missing_program_is_refused_with_code_2_and_else_an_error_of_its_channel(two: Two) -> None:
     two.write("WRONG", "10 A%=\n")
     assert two.ask('MCOPS(4,2,"NONE",,,2)', 'MCOPS(4,2,"WRONG",,,3)') == [6, 6]
@@ -170,6 +173,7 @@ def test_an_active_program_is_left_before_another_one(two: Two) -> None:
 @pytest.mark.covers(
     "cpl.MCOPS.4.code.32", "cpl.MCOPS.5", "cpl.MCOPS.6", "cpl.MCODS.32.sav.11", "cpl.MCODS.32.sav.1", "cpl.ncs.10",
     "cpl.MCOPS.4", "cpl.MCODS.32")  # fmt: skip
+@pytest.mark.covers("cpl.MCODS", "cpl.MCOPS")
 def test_a_block_put_in_by_hand_is_started_by_the_next_call(two: Two) -> None:
     block = 'MCOPS(4,2,"G1 X2=3 F6000",,,32)'
     assert two.ask(block) == [8]
@@ -191,6 +195,7 @@ def test_a_block_put_in_by_hand_is_started_by_the_next_call(two: Two) -> None:
 @pytest.mark.covers(
     "cpl.MCOPS.4.code.128", "cpl.MCOPS.4.code.1024", "cpl.ncs.25", "cpl.ncs.18", "cpl.ncs.102", "cpl.MCOPS.4"
 )
+@pytest.mark.covers("cpl.MCOPS")
 def test_a_block_that_starts_at_once_is_executed_or_refused(two: Two) -> None:
     two.pnc.select_mode(Mode.MDI, channel=2)
     assert two.ask('MCOPS(4,2,"G1 X2=5 F6000",,,160)') == [0]
@@ -218,6 +223,7 @@ BUFFERED = 32 + 4096
 @pytest.mark.covers(
     "cpl.MCOPS.4.code.4096", "cpl.MCODS.32.sav.12", "cpl.ncs.26", "cpl.MCOPS.4", "cpl.MCODS.32"
 )
+@pytest.mark.covers("cpl.MCODS", "cpl.MCOPS")
 def test_blocks_are_put_in_while_others_are_executed(two: Two) -> None:
     two.pnc.select_mode(Mode.MDI, channel=2)
     write = 'MCOPS(4,2,"{}",,,{})'
@@ -238,6 +244,7 @@ def test_blocks_are_put_in_while_others_are_executed(two: Two) -> None:
 
 @pytest.mark.covers("cpl.MCOPS.4")
 @pytest.mark.covers("cpl.ncs.26")
+@pytest.mark.covers("cpl.MCOPS")
 def test_a_buffer_that_is_full_takes_nothing(two: Two) -> None:
     two.pnc.select_mode(Mode.MDI, channel=2)
     pnc = two.pnc
@@ -252,6 +259,7 @@ def test_a_buffer_that_is_full_takes_nothing(two: Two) -> None:
 
 @pytest.mark.covers("cpl.MCOPS.4")
 @pytest.mark.covers("cpl.ncs.7")
+@pytest.mark.covers("cpl.MCOPS")
 def test_two_programs_cannot_write_into_a_buffer_in_one_cycle(tmp_path: Path) -> None:
     (tmp_path / "three.toml").write_text(MACHINE + AXIS.format("U"))
     pnc = Pnc(tmp_path, tmp_path / "three.toml", channels=[("X", "Y"), ("X2", "Y2"), ("U",)])
@@ -272,6 +280,7 @@ def test_two_programs_cannot_write_into_a_buffer_in_one_cycle(tmp_path: Path) ->
 @pytest.mark.covers("cpl.MCOPS.6", "cpl.MCOPS.4")
 @pytest.mark.covers("cpl.MCOPS")
 @pytest.mark.covers("cpl.MCOPS.2", "cpl.MCODS.32.sav.8", "cpl.ncs.3", "cpl.MCODS.32")
+@pytest.mark.covers("cpl.MCODS")
 def test_a_control_reset_stops_another_channel_and_takes_no_orders_meanwhile(two: Two) -> None:
     two.pnc.select_program("LONG", channel=2)
     two.pnc.cycle_start(channel=2)
@@ -291,6 +300,7 @@ def test_a_control_reset_stops_another_channel_and_takes_no_orders_meanwhile(two
 @pytest.mark.covers("cpl.MCOPS.6", "cpl.MCOPS.4", "cpl.MCOPS.3")
 @pytest.mark.covers("cpl.MCOPS.2", "cpl.MCOPS.5")
 @pytest.mark.parametrize("call", ["MCOPS(2,1)", "MCOPS(5,1)", "MCOPS(2,-2)", "MCOPS(2,1,2)"])
+@pytest.mark.covers("cpl.MCOPS")
 def test_a_program_that_resets_its_own_channel_ends_there(two: Two, call: str) -> None:
     two.pnc.select_program("LONG", channel=2)
     two.pnc.cycle_start(channel=2)
@@ -305,6 +315,7 @@ def test_a_program_that_resets_its_own_channel_ends_there(two: Two, call: str) -
 
 
 @pytest.mark.covers("cpl.MCOPS.4")
+@pytest.mark.covers("cpl.MCOPS")
 def test_a_program_that_leaves_itself_hands_over_to_the_next(two: Two) -> None:
     two.write("NEXT", "10 #N%=7\nN1 G1 Y4 F6000\n")
     two.start('N1 G1 X3 F6000\n20 WAIT\n30 #A%=MCOPS(4,1,"NEXT",,,64+128)\n40 #A%=99')
@@ -329,6 +340,7 @@ def test_a_program_that_leaves_itself_hands_over_to_the_next(two: Two) -> None:
     "cpl.MCODS.refresh",
 )
 @pytest.mark.parametrize("service", [2, 5])
+@pytest.mark.covers("cpl.MCODS")
 def test_a_program_is_selected_again_unless_that_is_suppressed(again: Two, service: int) -> None:
     assert again.ask('MCOPS(4,2,"PART")', f"MCOPS({service},2)", "MCOPS(6,2)") == [0, 0, 0]
     again.after()
@@ -371,6 +383,7 @@ def test_starts_and_modes_have_their_conditions(two: Two) -> None:
     "cpl.MCOPS.7",
 )
 @pytest.mark.parametrize(("mode", "code", "other"), [(1, 256, 512), (2, 512, 256)])
+@pytest.mark.covers("cpl.MCOPS")
 def test_axes_are_moved_by_hand_where_the_mode_fits(two: Two, mode: int, code: int, other: int) -> None:
     assert two.ask(f"MCOPS(4,2,,,,{code})", f"MCOPS(7,2,{mode})") == [8, 0]
     assert two.ask(f"MCOPS(4,2,,,,{code})", f"MCOPS(4,2,,,,{other})") == [0, 8]
@@ -386,6 +399,7 @@ def test_axes_are_moved_by_hand_where_the_mode_fits(two: Two, mode: int, code: i
 
 
 @pytest.mark.covers("cpl.MCOPS.1", "cpl.ncs.102")
+@pytest.mark.covers("cpl.MCOPS")
 def test_what_is_not_simulated_is_refused(two: Two) -> None:
     two.pnc.select_program("LONG", channel=2)
     two.pnc.cycle_start(channel=2)
@@ -413,6 +427,7 @@ def test_a_channel_in_wait_says_so_and_wakes_who_asks_with_the_version(two: Two,
 
 @pytest.mark.covers("cpl.MCODS.31")
 @pytest.mark.covers("cpl.MCODS.87.bit.13", "cpl.MCODS.87")
+@pytest.mark.covers("cpl.MCODS")
 def test_a_channel_that_waits_for_data_shows_it(two: Two) -> None:
     two.start("10 DIM W%(1) : V=0\n20 E%=MCODS(31,2,V,W%,1)\n30 E%=MCODS(31,2,V,W%,1)\n40 #M%=W%(1)")
     two.pnc.advance(20)
@@ -430,6 +445,7 @@ def test_a_channel_that_waits_for_data_shows_it(two: Two) -> None:
     "cpl.MCODS.32",
     "cpl.MCODS.87",
 )
+@pytest.mark.covers("cpl.MCODS")
 def test_the_interpolator_runs_down_in_feed_hold(two: Two) -> None:
     two.pnc.select_program("LONG", channel=2)
     two.pnc.cycle_start(channel=2)

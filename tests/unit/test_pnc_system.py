@@ -276,6 +276,7 @@ def test_active_functions_feeds_and_positions_are_read(cell: Cell) -> None:
     *(f"cpl.SDR.{row}" for row in ("68.1.n", "68.2.n", "168.1.n", "168.2.n", "268.1.n", "268.2.n", "202.s")),
     "cpl.ex.2298",
 )  # fmt: skip
+@pytest.mark.covers("cpl.SD", "cpl.SDR")
 def test_what_is_programmed_and_what_is_active_are_told_apart(cell: Cell) -> None:
     (cell.folder / "macoda.dat").write_text("6010 00010 = 33\n")
     blocks = (
@@ -302,6 +303,7 @@ GROUPS = {
 
 
 @pytest.mark.covers(*(f"cpl.SD.group.{group}" for group in GROUPS), "cpl.SD.1.i.1", "cpl.SD.1.i.2")
+@pytest.mark.covers("cpl.SD")
 def test_g_functions_of_each_group_are_told_while_they_hold(cell: Cell) -> None:
     lines, wanted = ["1 WAIT", "N1 M3 S100"], []
     for group, words in GROUPS.items():
@@ -462,6 +464,7 @@ def test_parameters_say_which_data_modules_a_program_may_write(cell: Cell) -> No
 @pytest.mark.covers(
     "cpl.SD.200.1", "cpl.SD.200.1.i", "cpl.SD.200.3.i",
 )  # fmt: skip
+@pytest.mark.covers("cpl.SD")
 def test_a_control_without_areas_and_couplings_says_so(cell: Cell) -> None:
     areas = ["SD(200,1)", *(f"SD(200,{index},{area})" for index in (1, 3) for area in (1, 10))]
     couplings = [
@@ -487,11 +490,11 @@ def test_system_data_of_functions_that_no_program_can_program_are_0(cell: Cell, 
 def test_a_program_asks_its_own_control(cell: Cell) -> None:
     blocks = (
         "10 DIM BUF%(2)\n20 VERSION=0\nN25 G1 X12.5 Y3 F640\n26 WAIT\n30 ERR_VAR% = MCODS(32,1,VERSION,BUF%,2)\n"
-        "40 DIM P!(4) : V2=0 : E%=MCODS(1,-1,V2,P!,4)\n50 ERR_VAR2% = MCOPS(6,9)\n60 E3%=MCOPS(6,1)"
+        "40 DIM P!(4) : V2=0 : E%=MCODS(1,-1,V2,P!,4)\n50 ERR_VAR2% = MCOPS(6,9)\n60 E3%=MCOPS(6,1)\n"
+        "70 V2=0 : E4%=MCODS(32,7,V2,BUF%,2) : E5%=MCODS(17,1,V2,BUF%,2)"
     )
-    assert cell.values(blocks, "ERR_VAR%", "BUF%(1)", "BUF%(2)", "P!(1)", "P!(2)", "ERR_VAR2%", "E3%") == [
-        0, 3, 1, 12.5, 3, 1, 9,
-    ]  # fmt: skip
+    asked = "ERR_VAR%", "BUF%(1)", "BUF%(2)", "P!(1)", "P!(2)", "ERR_VAR2%", "E3%", "E4%", "E5%"
+    assert cell.values(blocks, *asked) == [0, 3, 1, 12.5, 3, 1, 9, 1, 102]
     names = cell.report(
         "1 DIM A$(80) : V=0\n2 E%=MCODS(33,-1,V,A$,80) : DIM B$(2) : B$=MID$(A$,28,1) : PRN#(1,B$)"
     )
@@ -559,6 +562,7 @@ def measuring(cell: Cell) -> Cell:
 
 
 @pytest.mark.covers("cpl.ex.1451", "cpl.CPROBE", "cpl.param.1003_00012", "cpl.SD.9", "cpl.PROBE", "cpl.PPOS")
+@pytest.mark.covers("cpl.SD")
 def test_a_coordinate_is_measured(measuring: Cell) -> None:
     blocks = (
         "N5 G168 X10\nN6 G1 X20 Y1 F900\nN10 G75 X20 Y1 Z-50\n20 IF SD(9) = 1 THEN\n"
@@ -572,6 +576,7 @@ def test_a_coordinate_is_measured(measuring: Cell) -> None:
 
 @pytest.mark.covers("cpl.CPOS")
 @pytest.mark.covers("cpl.ex.2307", "cpl.nc.MSG_text", "cpl.SD.9")
+@pytest.mark.covers("cpl.SD")
 def test_no_contact_is_told_and_no_position_is_given(measuring: Cell) -> None:
     blocks = (
         "N1 G1 X5 F9000\nN4 G75 X90\n60 IF SD(9) = 1 THEN\nN7 (MSG, PROBE WAS NOT DEFLECTED)\n80 GOTO .ERROR\n90 ELSE\n"
@@ -600,6 +605,7 @@ def test_what_measured_values_consider(measuring: Cell) -> None:
 
 
 @pytest.mark.covers("cpl.CPROBE", "cpl.PPOS", "cpl.SD.9", "cpl.PROBE", "cpl.nc.G275", "cpl.nc.G375")
+@pytest.mark.covers("cpl.SD")
 def test_one_axis_is_measured_in_passing_and_a_stop_is_reached(measuring: Cell) -> None:
     found = measuring.values("N1 G1 Y3 F900\nN2 G275 Z-20 F900", "SD(9)", "PROBE(3)", "PPOS(3)", "CPOS(3)")
     assert found == pytest.approx([0, -12.345, -12.345, -20], abs=1e-5)
@@ -616,6 +622,7 @@ def test_words_that_are_not_simulated_are_refused(cell: Cell, word: str) -> None
 
 
 @pytest.mark.covers("cpl.SD.12.val.0", "cpl.SD.12.val.3", "cpl.SD.12.val.4")
+@pytest.mark.covers("cpl.SD")
 def test_the_sense_of_the_spindle_is_that_of_its_last_word(cell: Cell) -> None:
     found = cell.values(
         "N1 S700 M4\nN2 G1 X1 F900\n3 WAIT\n4 A%=SD(12,2)\nN5 M3\n6 B%=SD(12,2)\nN7 M5\n8 C%=SD(12,2)",

@@ -44,34 +44,38 @@ def shift_of(code: int) -> float:
     return 1.25 * (code % 100 - 50) - code / 100 * 0.5
 
 
+def asked_of(code: int) -> str:
+    return f"M{code}!=MPOS(1) : S{code}!=FXC(1)"
+
+
 @pytest.fixture(scope="module")
-def shifts(living: Living) -> dict[int, tuple[float, float, float]]:
-    """Return what each address reads of X and of Z, and where X1.5 goes while it is in force."""
+def shifts(living: Living) -> dict[int, tuple[float, float, float, float]]:
+    """Return what each address reads of X and of Z, and where X1.5 goes and what is in force while it is."""
     lines = [
         f'1 FXC("X",{code},1)={shift_of(code)} : FXC(2,{code},1)={-2 * shift_of(code)}' for code in CODES
     ]
     lines += [
         f'1 FXC("X",{code},0)={shift_of(code)} : FXC("Z",{code},0)={-2 * shift_of(code)}' for code in EXTERNAL
     ]
-    names = {code: f"M{code}!" for code in (*CODES, *EXTERNAL)}
     for off, group in GROUPS.items():
-        lines += [f"N1 G{code}\nN2 G1 X1.5 F60000\n3 WAIT\n4 {names[code]}=MPOS(1)" for code in group]
+        lines += [f"N1 G{code}\nN2 G1 X1.5 F60000\n3 WAIT\n4 {asked_of(code)}" for code in group]
         lines += [f"N5 G{off}"]
-    lines += [f"N1 G{code}\nN2 G1 X1.5 F60000\n3 WAIT\n4 {names[code]}=MPOS(1)\nN5 G167" for code in EXTERNAL]
+    lines += [f"N1 G{code}\nN2 G1 X1.5 F60000\n3 WAIT\n4 {asked_of(code)}\nN5 G167" for code in EXTERNAL]
     table = dict.fromkeys(CODES, 1) | dict.fromkeys(EXTERNAL, 0)
     asked = []
-    for code, name in names.items():
-        asked += [f"FXC(1,{code},{table[code]})", f'FXC("Z",{code},{table[code]})', name]
+    for code, number in table.items():
+        asked += [f"FXC(1,{code},{number})", f'FXC("Z",{code},{number})', f"M{code}!", f"S{code}!"]
     found = told(living, "\n".join(lines), *asked)
     return {
-        code: (found[n], found[n + 1], found[n + 2]) for code, n in zip(names, range(0, 99, 3), strict=False)
+        code: (found[n], found[n + 1], found[n + 2], found[n + 3])
+        for n, code in zip(range(0, 132, 4), table, strict=False)
     }
 
 
 @pytest.mark.parametrize("code", covered("FXC.G.", (*CODES, *EXTERNAL), "FXC"))
 def test_each_shift_is_read_and_moves_its_axis_while_it_is_in_force(shifts: Any, code: int) -> None:
     value = shift_of(code)
-    assert shifts[code] == pytest.approx((value, -2 * value, 1.5 + value))
+    assert shifts[code] == pytest.approx((value, -2 * value, 1.5 + value, value))
 
 
 @pytest.mark.covers("cpl.FXC", "cpl.FXC.table.1", "cpl.FXC.table.2", "cpl.FXC.table.3", "cpl.FXC.table.0")
@@ -95,7 +99,8 @@ def test_shifts_are_added_to_and_given_in_mm_or_inch(living: Living) -> None:
         living,
         '1 DIM T$(30) : T$="/user/A1.npv" : FXCR(1,T$) : FXC(1,54,T$)=20 : FXC(-1,54,T$)=2 : FXC("Z",54,T$,2)=10/25.4\n'
         '2 FXC("Z",254,T$)=5 : FXC("-Z",254,T$)=3 : FXC("-C",54,T$)=20 : FXC("-C",54,T$)=20 : FXC("C",55,T$,2)=30\n'
-        '3 FXC(1,55,T$,0)=7.5 : FXC("X",59,1,2)=2 : FXC("X",58,1,0)=-7',
+        '3 FXC(1,55,T$,0)=7.5 : FXC("X",59,1,2)=2 : FXC("X",58,1,0)=-7\n'
+        '4 FXC(1,56,T$)=30 : FXC(-1,56,T$,2)=-2 : FXC("Z",57,1)=12 : FXC("-Z",57,1,2)=3 : FXC("-Z",57,1,0)=1',
         *(
             "FXC(1,54,T$)",
             "FXC(2,54,T$)",
@@ -112,8 +117,12 @@ def test_shifts_are_added_to_and_given_in_mm_or_inch(living: Living) -> None:
             "FXC(1,58,1,2)*25.4",
             "FXC(1,54,T$,2)",
         ),
+        "FXC(1,56,T$)",
+        'FXC("Z",57,1)',
     )
-    assert found == pytest.approx([22, 10, 10 / 25.4, 8, 40, 30, 7.5, 50.8, 2, 50.8, -7, 22 / 25.4], abs=1e-5)
+    assert found == pytest.approx(
+        [22, 10, 10 / 25.4, 8, 40, 30, 7.5, 50.8, 2, 50.8, -7, 22 / 25.4, 30 - 50.8, 89.2], abs=1e-5
+    )
     lines = (living.folder / "user/A1.npv").read_text("latin-1").splitlines()
     assert lines[:3] == ["ZERO SHIFT TABLE MM", "AXES X Z C:ROTARY", f"G54 22.0 {lines[2].split()[2]} 40.0"]
     assert lines[3] == "G55 7.5 0.0 30.0"
@@ -507,6 +516,7 @@ NOT_IN_USE = {
     ("row", "data"),
     [pytest.param(*each, marks=pytest.mark.covers(f"cpl.{each[0]}")) for each in NOT_IN_USE.items()],
 )
+@pytest.mark.covers("cpl.SD", "cpl.SDR")
 def test_system_data_that_are_not_in_use_stop_a_program(living: Living, row: str, data: str) -> None:
     assert stopped(living, f"A={data}") == "INVALID PARAMETER"
 

@@ -152,6 +152,7 @@ M30
     ],
 )
 @pytest.mark.covers("cpl.MCOPS.3")
+@pytest.mark.covers("cpl.MCOPS")
 def test_the_operator_searches_a_part_of_a_program(
     tmp_path: Path, start: str, end: str, x: float, seen: int
 ) -> None:

@@ -108,7 +108,7 @@ class SystemAxes:
         if is_name(axis):
             name = text_of(axis) or ""
             found = next((each for each in axes if self.logical_name(number, each) == name), None)
-            if found is not None and kind != PHYSICAL:
+            if found is not None:
                 return found
             if channel is not OMITTED:
                 raise Fault(AXIS_OF_CHANNEL, f"channel {number} has no axis {name}")
