@@ -12,6 +12,7 @@ import numpy as np
 from polycnc.kernel import (
     GEO_WAIT_S,
     NOT_MERGED,
+    NOT_SMALL,
     RAPID,
     STOP,
     WAIT,
@@ -21,6 +22,7 @@ from polycnc.kernel import (
     Segments,
     append_arc,
     append_line,
+    append_small_arc,
     append_spline,
     append_wait,
     close_line,
@@ -174,7 +176,7 @@ class QueueWriter:
         return end - since > _LOOKED_AT
 
     def _append(self, item: QueueItem) -> None:
-        if not isinstance(item, Line):
+        if not isinstance(item, Line | Arc):
             self._close_line()
         match item:
             case Line():
@@ -189,9 +191,11 @@ class QueueWriter:
     def _has_room(self, item: QueueItem) -> bool:
         """Tell whether there is room: a line with a rounded corner takes two slots, a wait one and one per event.
 
-        One more is for the corner of a line that is complete.
+        One more is for the corner of a line that is complete, three for an arc that becomes two lines.
         """
         needed = 2 + (len(item.events) if isinstance(item, Wait) else 1)
+        if isinstance(item, Arc) and self.paths.row[self.path]["merge_mm"] > 0.0:
+            needed += 3
         return self.free >= needed
 
     def _put_line(self, item: Line) -> None:
@@ -212,7 +216,8 @@ class QueueWriter:
 
     def _put_arc(self, item: Arc) -> None:
         p, q = item.plane[:2]
-        append_arc(
+        row = self.paths.row[self.path]
+        arc = (
             self.seg,
             self.paths,
             self.path,
@@ -227,6 +232,15 @@ class QueueWriter:
             STOP if item.exact_stop else 0,
             item.tag,
         )
+        if row["merge_mm"] > 0.0:
+            last = int(row["tail"]) - 1
+            before = append_small_arc(*arc)
+            if before not in (NOT_SMALL, NOT_MERGED) and self.marks is not None:
+                self.marks.append((last, before))
+            if before != NOT_SMALL:
+                return
+        self._close_line()
+        append_arc(*arc)
 
     def _put_spline(self, item: Spline) -> None:
         append_spline(
