@@ -344,7 +344,8 @@ def _junction_by_share(
                 after["kept_in"] = max(
                     after["kept_in"], _kept_on_curve(seg, following, limits, work, inherited, after["cap"])
                 )
-    if after["flags"] & LAST and path["last_share"] > 0.0 and row["kind"] != OVERLAP:
+    free = row["kind"] == OVERLAP and path["free_overlaps"] != 0
+    if after["flags"] & LAST and path["last_share"] > 0.0 and not free:
         speed = min(speed, math.sqrt(_last_part(after, path) * after["full_accel"] * after["length"]))
     return float(speed)
 
