@@ -1,9 +1,9 @@
 """Let a motion begin while the one before it ends, where a corner may be left but no arc rounds it.
 
-With BY_SHARE that is the corner beside a helix, or beside an arc that lies in another plane: as LinuxCNC does it, the
+With BY_SHARE that is the corner beside a helix, or beside an arc that no other one touches: as LinuxCNC does it, the
 motion into the corner slows down to rest with half of its acceleration, and the one out of it speeds up with half of
-its own so early that they pass the corner within the tolerance. An axis has what one leaves for the other, and both
-keep to their half all along. The piece in which both move is an OVERLAP (`_cubic`).
+its own so early that they pass the corner within the tolerance, which `free_overlaps` lets them leave. An axis has what
+one leaves for the other, and both keep to their half all along. The piece in which both move is an OVERLAP (`_cubic`).
 
 Units: those of `_segments`.
 """
