@@ -12,10 +12,13 @@ import pytest
 
 import polycnc
 from polycnc.kernel import (
+    NOT_MERGED,
+    NOT_SMALL,
     RAPID,
     STOP,
     KernelState,
     append_line,
+    append_small_arc,
     close_line,
     drop_queue,
     make_state,
@@ -23,7 +26,7 @@ from polycnc.kernel import (
     prepare_path,
 )
 from polycnc.kernel._path import MOST_MERGED
-from polycnc.kernel._segments import LINE
+from polycnc.kernel._segments import ARC, LINE
 from support.often import often
 from support.programs import prepare
 from support.runs import program_run
@@ -177,6 +180,74 @@ def test_a_dropped_queue_takes_nothing_into_lines_that_are_gone() -> None:
     assert not give(state, STRAIGHT[1])
 
 
+# ------------------------------------------------------------------ small arcs
+
+
+def give_arc(state: KernelState, to: float, radius: float, rise: float = 0.0, **other: int) -> int:
+    """Give an arc from the end of the queue to a point beyond it in X, half a turn or less, as a channel does."""
+    start = state.paths.queued[0].copy()
+    half = 0.5 * (to - start[0])
+    angle = math.asin(min(1.0, half / radius))
+    end = start + [2.0 * half, 0.0, rise, *np.zeros(len(start) - 3)]
+    center = start[1] - radius * math.cos(angle)
+    axes = other.get("p", 0), other.get("q", 1)
+    found = append_small_arc(
+        *(state.seg, state.paths, 0, state.limits, end, *axes, start[0] + half, center),
+        *(-2.0 * angle, 50.0, other.get("flags", 0), other.get("tag", 7)),
+    )
+    return int(found)
+
+
+@pytest.mark.parametrize("radius", [0.01, 0.025, 0.4])
+def test_small_arcs_merge_and_the_line_stays_near_all_of_them(radius: float) -> None:
+    state = queue(MERGE_MM, 1e-9)
+    give(state, np.array([0.7, 0.0, 0.0]))
+    half = min(radius, 0.1)
+    arcs: list[Floats] = []
+    for _ in range(40):
+        start = state.paths.queued[0].copy()
+        give_arc(state, float(start[0]) + 2.0 * half, radius, 0.001)
+        turn = np.linspace(-1.0, 1.0, 30) * math.asin(half / radius)
+        x, y = radius * np.sin(turn) + start[0] + half, radius * (np.cos(turn) - math.cos(turn[0])) + start[1]
+        arcs.append(np.stack([x, y, np.linspace(start[2], start[2] + 0.001, 30)], axis=1))
+        give(state, state.paths.queued[0] + [0.3, 0.0, 0.0])
+    close_line(state.seg, state.paths, 0, state.limits)
+    ends = lines(state)
+    assert 1 <= len(ends) < 12, "each line takes the place of several arcs"
+    for point in np.concatenate(arcs):
+        assert min(off_line(point, *pair) for pair in ends) <= MERGE_MM * (1.0 + 1e-9)
+
+
+@pytest.mark.parametrize(
+    ("radius", "other", "axes"),
+    [
+        pytest.param(0.0305, {}, 3, id="bends by as much"),
+        pytest.param(0.01, {"p": 1, "q": 2}, 3, id="another plane"),
+        pytest.param(0.01, {"flags": STOP}, 3, id="exact stop"),
+        pytest.param(0.01, {}, 2, id="no third axis"),
+    ],
+)
+def test_arcs_that_stay_arcs(radius: float, other: dict[str, int], axes: int) -> None:
+    state = make_state(axes, segments=64) if axes != 3 else queue(MERGE_MM)
+    state.paths.row["merge_mm"], state.paths.row["tolerance_mm"] = MERGE_MM, 0.01
+    if axes == 3:
+        assert give_arc(state, 2.0 * radius, radius, **other) == NOT_SMALL
+    else:
+        end = np.array([2.0 * radius, 0.0])
+        args = (state.seg, state.paths, 0, state.limits, end, 0, 1, radius, 0.0, -math.pi, 50.0, 0, 7)
+        assert append_small_arc(*args) == NOT_SMALL
+    assert state.paths.row[0]["tail"] == 0
+
+
+def test_a_small_arc_tells_which_block_it_has_joined() -> None:
+    state = queue(MERGE_MM)
+    give(state, np.array([0.7, 0.0, 0.0]), tag=5)
+    assert give_arc(state, 0.71, 0.01) == 5
+    assert state.seg.row["tag"][0] == 7
+    assert give_arc(state, 0.76, 0.05, tag=8, rise=9.0) == NOT_MERGED  # it climbs: a line of its own
+    assert len(lines(state)) == 2
+
+
 # ------------------------------------------------------------------ programs
 
 RULES = {
@@ -198,6 +269,23 @@ def test_the_rule_in_force_decides(rule: str, ordinary_blocks: float) -> None:
     channel = prepare(program, dialect="linuxcnc", ordinary_blocks=ordinary_blocks)
     found = channel.machine.state.seg.row["kind"][: int(channel.machine.state.paths.row[0]["tail"])] == LINE
     assert np.count_nonzero(found) == (1 if RULES[rule] else 39)
+
+
+@pytest.mark.parametrize("ordinary_blocks", [3, math.inf])
+def test_small_arcs_of_a_program_join_the_lines_beside_them(ordinary_blocks: float) -> None:
+    blocks = "".join(f"G1 X{0.52 * n + 0.5:.2f}\nG3 X{0.52 * n + 0.52:.2f} Y0 I0.01 J0\n" for n in range(8))
+    for plane, found in (("", [LINE]), ("G18", [LINE, ARC])):
+        program = f"G21 F2400 G64 P0.03 {plane}\n" + blocks.replace("J0", "K0" if plane else "J0") + "M30\n"
+        channel = prepare(program, dialect="linuxcnc", ordinary_blocks=ordinary_blocks, marks=True)
+        kinds = channel.machine.state.seg.row["kind"][: int(channel.machine.state.paths.row[0]["tail"])]
+        assert sorted(set(kinds) & {LINE, ARC}) == found
+        if not plane:
+            assert np.count_nonzero(kinds == LINE) == 1
+            assert (
+                len(channel.writer.marks) == 16
+            )  # the first block, and all but the last, which have joined that
+        else:
+            assert np.count_nonzero(kinds == LINE) >= 8
 
 
 def test_q_of_a_program_in_inches_is_in_inches_and_not_negative(tmp_path: Path) -> None:

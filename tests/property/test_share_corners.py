@@ -129,6 +129,21 @@ def test_an_exact_path_goes_on_through_a_corner_that_needs_less_than_the_share()
     assert second["junction"] == 0.0
 
 
+@pytest.mark.parametrize("tolerance", [EXACT_PATH, 0.0, 0.05])
+def test_a_path_that_turns_back_rests_and_its_lines_keep_all_of_their_acceleration(tolerance: float) -> None:
+    track = Track(tolerance)
+    track.line(30.0, 0.0, 0.0)
+    track.line(11.0, 0.3, 0.0)  # turned by 179.1 degrees
+    track.line(11.0, 9.0, 0.0)
+    track.close()
+    first, second = track.rows()[:2]
+    assert first["junction"] == 0.0
+    assert first["accel"] == pytest.approx(ACCELERATION[0], rel=1e-9)
+    held = SHARE if tolerance <= 0.0 else 0.0  # by the next corner, where that is not rounded
+    u = np.array([-19.0, 0.3, 0.0]) / math.hypot(19.0, 0.3)
+    assert second["accel"] == pytest.approx(allowed(u) * (1.0 - held), rel=1e-6)
+
+
 # ------------------------------------------------------------------ rounded corners
 
 
@@ -281,6 +296,7 @@ def test_lines_of_one_length_keep_the_limits_of_the_axes(tolerance: float, lengt
         ({"corner_share": 0.1, "rounding_share": 0.51}, "rounding_share"),
         ({"last_share": 0.6}, "'last_share' needs 'corner_share'"),
         ({"rounding_gap_s": 0.003}, "'rounding_gap_s' needs 'corner_share'"),
+        ({"free_overlaps": True}, "'free_overlaps' needs 'corner_share'"),
     ],
 )
 def test_rules_that_do_not_go_together_are_refused(rules: dict[str, float], what: str) -> None:

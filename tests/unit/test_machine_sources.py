@@ -309,11 +309,15 @@ def test_linuxcnc_corners_are_those_of_its_trapezoidal_planner(tmp_path: Path) -
         tmp_path, LINUXCNC.replace("[TRAJ]", f"[TRAJ]\n{lines}\nPLANNER_TYPE = 1\nMAX_LINEAR_JERK = 800")
     )
     found = [
-        (path.corner_share, path.rounding_share, path.last_share, path.rounding_gap_s)
+        (path.corner_share, path.rounding_share, path.last_share, path.rounding_gap_s, path.free_overlaps)
         for path in (plain.path, told.path, jerk.path)
     ]
     # Its servo period is half a millisecond.
-    assert found == [(0.1, 0.5, 0.5, 0.002), (0.04, 0.5, 0.5, 0.003), (None, None, None, 0.0)]
+    assert found == [
+        (0.1, 0.5, 0.5, 0.002, True),
+        (0.04, 0.5, 0.5, 0.003, True),
+        (None, None, None, 0.0, False),
+    ]
 
 
 def test_fanuc_ramps_give_the_acceleration_and_corner_steps_the_jump(tmp_path: Path) -> None:

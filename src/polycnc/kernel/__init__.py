@@ -86,6 +86,7 @@ from polycnc.kernel._segments import (
 )
 from polycnc.kernel._segments import WAIT_S as GEO_WAIT_S
 from polycnc.kernel._servo import IDEAL, PIDF
+from polycnc.kernel._small_arcs import NOT_SMALL, append_small_arc
 from polycnc.kernel._state import (
     FOLLOWING_ERROR,
     OTHER_SOURCE,
@@ -129,6 +130,7 @@ __all__ = [
     "MAIN",
     "MOST_SPANS",
     "NOT_MERGED",
+    "NOT_SMALL",
     "NO_LIMIT",
     "OTHER_SOURCE",
     "PASSED_AT_ONCE",
@@ -183,6 +185,7 @@ __all__ = [
     "append_arc",
     "append_circle3d",
     "append_line",
+    "append_small_arc",
     "append_spline",
     "append_wait",
     "call_at",

@@ -35,6 +35,9 @@ from polycnc.kernel._segments import (
 CENTRIPETAL_SHARE = math.sqrt(0.75)  # highest part that the curvature of an arc may use
 OVERLAP_SHARE = 0.5  # of its acceleration has a segment that overlaps with another
 OVERLAP_BEND_SHARE = 0.95  # of an axis' acceleration may be what an OVERLAP changes its speed by
+EVENLY = (
+    0.05  # of what it could has a free OVERLAP, whose speed goes evenly from that of one motion to the other
+)
 BRAKED_PART = 0.5  # of its speed at its start, above which an OVERLAP that gets faster is gone through
 LAST_ARC_SHARE = 0.5  # of its acceleration has an arc that may go on, as if turning took CENTRIPETAL_SHARE
 
@@ -122,11 +125,13 @@ def limit_arc_by_share(
     if seg.row[k]["flags"] & OVERLAPS:
         accel *= OVERLAP_SHARE
     radius = _radius_by_rise(geo)
-    top = min(top, math.sqrt(CENTRIPETAL_SHARE * accel * radius))
-    turning = top * top / (radius * accel)
+    turns_at = min(top, math.sqrt(CENTRIPETAL_SHARE * accel * radius))
+    turning = turns_at * turns_at / (radius * accel)
     left = math.sqrt(1.0 - turning * turning)
     if seg.row[k]["flags"] & LAST:
         left = min(left, LAST_ARC_SHARE)
+    else:
+        top = turns_at
     accel *= left
     cap = min(asked_mm_s, path["speed_limit_mm_s"], top)
     for i in range(tangent.shape[0]):
@@ -148,7 +153,7 @@ def _radius_by_rise(geo: Floats) -> float:
 def keep_turning(seg: Segments, k: int, limits: AxisLimits, path: np.void, work: Floats, kept: float) -> None:
     """Lower the cap of an arc on a path with BY_SHARE so that turning leaves its corner its part; `work`: scratch."""
     row = seg.row[k]
-    if row["kind"] == ARC and not row["flags"] & ROUNDING:
+    if row["kind"] == ARC and not row["flags"] & (ROUNDING | LAST):
         top, accel = axes_allow(seg, k, limits, path, work[0], work[1])
         if row["flags"] & OVERLAPS:
             accel *= OVERLAP_SHARE
@@ -195,6 +200,8 @@ def limit_overlap(
     for i in range(tangent.shape[0]):
         if tangent[i] > 0.0:
             accel = min(accel, (min(limits.acceleration[i], whole) - square * bend[i]) / tangent[i])
+    if path["free_overlaps"] != 0:
+        accel *= EVENLY
     return min(asked_mm_s, math.sqrt(square)), max(accel, square * even)
 
 

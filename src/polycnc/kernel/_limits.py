@@ -55,6 +55,7 @@ CURVE_SHARE = 1.0 - CURVE_CORNER_SHARE
 SPLINE_CENTRIPETAL_SHARE = 0.45
 CORNER_MARGIN = 1.125  # the most that corners closer than a cycle can add up to unevenly
 LARGEST_BEND = 0.005  # rad; more is a corner, where an exact path comes to rest
+SHARPEST = math.radians(178.0)  # a sharper corner is a stop, which a path with BY_SHARE keeps nothing for
 STRAIGHT = 1e-13  # a smaller change of direction is rounding
 LEAST_PART = 0.249  # of `full_accel` is left whatever the corners and the override turn out to be
 LEAST_OF_ARC = 0.5  # of that is left to an arc with BY_SHARE that is turned through faster
@@ -295,6 +296,8 @@ def _junction_by_share(
     An exact path that rests in the corner holds it back all the same.
     """
     row, after = seg.row[k], seg.row[following]
+    if turns(work, SHARPEST):
+        return 0.0
     share = step_share(limits, work, speed, after["full_accel"], path["corner_cycle_s"])
     part = 1.0
     if (row["kind"] == ARC or after["kind"] == ARC) and path["rounding_share"] > 0.0:
@@ -341,7 +344,8 @@ def _junction_by_share(
                 after["kept_in"] = max(
                     after["kept_in"], _kept_on_curve(seg, following, limits, work, inherited, after["cap"])
                 )
-    if after["flags"] & LAST and path["last_share"] > 0.0:
+    free = row["kind"] == OVERLAP and path["free_overlaps"] != 0
+    if after["flags"] & LAST and path["last_share"] > 0.0 and not free:
         speed = min(speed, math.sqrt(_last_part(after, path) * after["full_accel"] * after["length"]))
     return float(speed)
 

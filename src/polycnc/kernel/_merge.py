@@ -30,11 +30,12 @@ def _open_line(seg: Segments, paths: Paths, g: int, limits: AxisLimits) -> None:
     k = slot(paths, g, paths.row[g]["tail"] - 1)
     p, q, r = counting_axes(seg, k, limits, seg.end[k])
     if p >= 0:
-        _keep_point(paths, g, seg.end[k], p, q, r)
+        keep_point(paths, g, seg.end[k], p, q, r)
 
 
 @compiled
-def _keep_point(paths: Paths, g: int, point: Floats, p: int, q: int, r: int) -> None:
+def keep_point(paths: Paths, g: int, point: Floats, p: int, q: int, r: int) -> None:
+    """Note a point that lines merged into the last one of path `g` have to stay near."""
     at = BLEND_COLUMNS + 3 * int(paths.row[g]["merged"])
     kept = paths.blend[g]
     kept[at], kept[at + 1], kept[at + 2] = point[p], point[q], point[r]
@@ -71,7 +72,7 @@ def merge_line(
     line["events"] = events
     for i in range(end.shape[0]):
         paths.queued[g, i] = end[i]
-    _keep_point(paths, g, end, p, q, r)
+    keep_point(paths, g, end, p, q, r)
     return before
 
 

@@ -1,9 +1,9 @@
 """Let a motion begin while the one before it ends, where a corner may be left but no arc rounds it.
 
-With BY_SHARE that is the corner beside a helix, or beside an arc that lies in another plane: as LinuxCNC does it, the
+With BY_SHARE that is the corner beside a helix, or beside an arc that no other one touches: as LinuxCNC does it, the
 motion into the corner slows down to rest with half of its acceleration, and the one out of it speeds up with half of
-its own so early that they pass the corner within the tolerance. An axis has what one leaves for the other, and both
-keep to their half all along. The piece in which both move is an OVERLAP (`_cubic`).
+its own so early that they pass the corner within the tolerance, which `free_overlaps` lets them leave. An axis has what
+one leaves for the other, and both keep to their half all along. The piece in which both move is an OVERLAP (`_cubic`).
 
 Units: those of `_segments`.
 """
@@ -29,7 +29,7 @@ from polycnc.kernel._curve_limits import (
 )
 from polycnc.kernel._geometry import segment_point, segment_tangent
 from polycnc.kernel._jit import apart, compiled
-from polycnc.kernel._limits import feed_in_force, segment_limits
+from polycnc.kernel._limits import SHARPEST, feed_in_force, segment_limits
 from polycnc.kernel._path import SCRATCH_POINTS, Paths, slot
 from polycnc.kernel._segments import (
     ARC,
@@ -48,7 +48,6 @@ from polycnc.kernel._segments import (
     set_common,
 )
 
-SHARPEST = math.radians(178.0)  # a sharper corner is a stop
 SHORTEST_MM = 1e-6
 MOST_TRIES = 16
 LEAST_ASIDE = 1e-3  # sine of half the turn; smaller ones leave the speed free
@@ -68,7 +67,7 @@ def overlap_corner(seg: Segments, paths: Paths, g: int, limits: AxisLimits) -> N
     row, after = seg.row[k], seg.row[following]
     if not may_be_rounded(path, row) or (row["flags"] | after["flags"]) & RAPID:
         return
-    if (row["kind"] != ARC and after["kind"] != ARC) or _lie_in_a_plane(seg, k, following):
+    if row["kind"] != ARC and after["kind"] != ARC:
         return
     p, q, r = _three_axes(seg, k, following, limits)
     if p < 0:
@@ -79,12 +78,12 @@ def overlap_corner(seg: Segments, paths: Paths, g: int, limits: AxisLimits) -> N
         taken = paths.blend[g, CUT]
     row["flags"] |= OVERLAPS
     after["flags"] |= OVERLAPS
-    time, leaving, entering = _size(seg, paths, g, k, following, limits, taken)
+    time, leaving, entering, cut_after = _size(seg, paths, g, k, following, limits, taken)
     if time * min(leaving, entering) < 2.0 * SHORTEST_MM:
         row["flags"] = flags
         after["flags"] &= ~OVERLAPS
         return
-    _insert(seg, paths, g, (p, q, r), time, (leaving, entering))
+    _insert(seg, paths, g, (p, q, r), time, (leaving, entering), cut_after)
 
 
 @compiled
@@ -118,8 +117,8 @@ def _three_axes(seg: Segments, k: int, following: int, limits: AxisLimits) -> tu
 @compiled
 def _size(
     seg: Segments, paths: Paths, g: int, k: int, following: int, limits: AxisLimits, taken: float
-) -> tuple[float, float, float]:
-    """Return how long two motions overlap, and the speeds with which one begins to end and the other has begun.
+) -> tuple[float, float, float, float]:
+    """Return how long two motions overlap, the speeds with which one begins to end and the other has begun, its way.
 
     All 0 where they do not. The one that ends has its speed with the deviation that is allowed left to go, and the
     other reaches its own by the end, with its acceleration at most.
@@ -129,7 +128,7 @@ def _size(
     tangents = work[SCRATCH_POINTS : SCRATCH_POINTS + 2 * n].reshape(2, n)
     row, after = seg.row[k], seg.row[following]
     if _is_passed(seg, k, following, limits, path, tangents):
-        return 0.0, 0.0, 0.0
+        return 0.0, 0.0, 0.0, 0.0
     cap, accel = segment_limits(seg, k, limits, path, tangents[0], tangents[1])
     cap_after, accel_after = segment_limits(seg, following, limits, path, tangents[0], tangents[1])
     length, length_after = row["length"] + taken, after["length"]
@@ -137,6 +136,8 @@ def _size(
     leaving, _ = _blend_speeds(
         (cap, accel, length), (cap_after, accel_after, length_after), aside, path["tolerance_mm"], 1.0
     )
+    if path["free_overlaps"] != 0:
+        return _by_ramps(row, length, after, (accel, accel_after), leaving, cap_after)
     segment_tangent(seg, k, 1.0, tangents[0])
     segment_tangent(seg, following, 0.0, tangents[1])
     time = leaving / accel
@@ -156,7 +157,34 @@ def _size(
     room = min(0.5 * length, row["length"] - SHORTEST_MM) / (0.5 * rate)
     room = min(room, length_after / rate_after)
     time = min(time, math.sqrt(max(0.0, room)))
-    return time, rate * time, rate_after * time
+    return time, rate * time, rate_after * time, 0.5 * time * (rate_after * time)
+
+
+@compiled
+def _by_ramps(
+    row: np.void,
+    length: float,
+    after: np.void,
+    accel: tuple[float, float],
+    leaving: float,
+    cap_after: float,
+) -> tuple[float, float, float, float]:
+    """Return the same where the next motion begins with the ramp of the one before it, and goes as its own lets it."""
+    time = leaving / accel[0]
+    cut_after = _gone(time, accel[1], cap_after)
+    room = min(0.5 * length, row["length"] - SHORTEST_MM) / (0.5 * leaving * time)
+    room = min(room, (after["length"] - SHORTEST_MM) / cut_after)
+    if room < 1.0:
+        time *= math.sqrt(max(0.0, room))
+        cut_after = _gone(time, accel[1], cap_after)
+    return time, accel[0] * time, min(cap_after, accel[1] * time), cut_after
+
+
+@compiled
+def _gone(time_s: float, accel_mm_s2: float, speed_mm_s: float) -> float:
+    """Return how far a motion goes from rest in a time, with an acceleration and up to a speed."""
+    reached = min(speed_mm_s, accel_mm_s2 * time_s)
+    return reached * (time_s - 0.5 * reached / accel_mm_s2)
 
 
 @compiled
@@ -360,7 +388,13 @@ def _pull(seg: Segments, k: int, limits: AxisLimits, at: float, out: Floats) -> 
 
 @compiled
 def _insert(
-    seg: Segments, paths: Paths, g: int, axes: tuple[int, int, int], time: float, speeds: tuple[float, float]
+    seg: Segments,
+    paths: Paths,
+    g: int,
+    axes: tuple[int, int, int],
+    time: float,
+    speeds: tuple[float, float],
+    cut_after: float,
 ) -> None:
     """Put an OVERLAP that takes `time`, with its speeds at both ends, between the last two segments of path `g`."""
     path, work = paths.row[g], paths.blend[g]
@@ -368,14 +402,14 @@ def _insert(
     following = slot(paths, g, path["tail"])
     n = seg.start.shape[1]
     point = work[SCRATCH_POINTS : SCRATCH_POINTS + n]
-    cut, cut_after = 0.5 * time * speeds[0], 0.5 * time * speeds[1]
+    cut, even = 0.5 * time * speeds[0], 0.5 * time * speeds[1]
     _copy(seg, between, following)
     _shorten(seg, k, cut, False, point)
     _shorten(seg, following, cut_after, True, point)
     tag = int(seg.row[following]["tag"])
     set_common(seg, between, seg.end[k], seg.start[following], max(speeds[0], speeds[1]), OVERLAPS, tag)
     seg.row[between]["kind"] = OVERLAP
-    seg.row[between]["length"] = cut + cut_after
+    seg.row[between]["length"] = cut + even
     geo = seg.geo[between]
     geo[ENTRY] = speeds[0] / (speeds[0] + speeds[1])
     segment_tangent(seg, k, 1.0, point)
@@ -385,7 +419,7 @@ def _insert(
     segment_tangent(seg, following, 0.0, point)
     for j in range(3):
         i = axes[j]
-        geo[SECOND + j] = seg.end[between, i] - seg.start[between, i] - 2.0 / 3.0 * cut_after * point[i]
+        geo[SECOND + j] = seg.end[between, i] - seg.start[between, i] - 2.0 / 3.0 * even * point[i]
     path["tail"] += 1
     work[CUT], work[CUT_LINE] = cut_after, path["tail"] - 1
 

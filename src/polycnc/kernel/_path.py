@@ -50,6 +50,7 @@ NO_LIMIT = 1 << 62
 EXACT_PATH = -1.0  # a tolerance: corners are stops, and the path goes on where there is none
 BLEND_COLUMNS = 17  # see `_blend`
 MOST_MERGED = 101  # points that one line takes the place of
+CORNERS_AROUND = 18  # numbers, see `_small_arcs`
 SCRATCH_POINTS = (
     BLEND_COLUMNS + 3 * MOST_MERGED
 )  # column of `blend` from which there is room for three points
@@ -129,6 +130,7 @@ PATH_ROW = np.dtype(
             "rounding_gap_s",
             np.float64,
         ),  # what is left of a line beside such an arc belongs to it if it takes less
+        ("free_overlaps", np.int8),  # motions that overlap leave tolerance and feed, see `_overlap`
         ("lead", np.float64),  # time into the running segment at sample 0
         (
             "entry_share",
@@ -156,7 +158,9 @@ class Paths(NamedTuple):
     totals: Floats  # [G, TOTALS] of the segments traversed so far
     position: Floats  # [G, m] now
     queued: Floats  # [G, m] end of the last segment appended
-    blend: Floats  # [G, BLEND_COLUMNS + 3 MOST_MERGED + 3m] scratch of `_blend`, points merged, 3 points of scratch
+    # Scratch of `_blend`, points merged, 3 points of scratch, corners around small arcs: [G, BLEND_COLUMNS +
+    # 3 MOST_MERGED + 3m + CORNERS_AROUND].
+    blend: Floats
     passed: Floats  # [G, MOST_PASSED, PASSED_COLUMNS] events that were passed, in their order
     axis: Ints  # [G, m] machine axis of each coordinate, -1 none
 
@@ -181,7 +185,7 @@ def make_paths(paths: int, slots: int, coordinates: int) -> Paths:
         totals=np.zeros((paths, TOTALS)),
         position=np.zeros((paths, coordinates)),
         queued=np.zeros((paths, coordinates)),
-        blend=np.zeros((paths, SCRATCH_POINTS + 3 * coordinates)),
+        blend=np.zeros((paths, SCRATCH_POINTS + 3 * coordinates + CORNERS_AROUND)),
         passed=np.zeros((paths, MOST_PASSED, PASSED_COLUMNS)),
         axis=np.tile(np.arange(coordinates, dtype=np.int64), (paths, 1)),
     )

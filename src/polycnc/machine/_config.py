@@ -134,6 +134,11 @@ class PathConfig(StrictModel):
         default=0.0,
         description="What is left of a line before such an arc has its share too, if it takes less than this.",
     )
+    free_overlaps: bool = Field(
+        default=False,
+        description="In corners of helices the next motion begins as early, and speeds up as fast, as both ramps let "
+        "it, even if that leaves the tolerance or passes the feed.",
+    )
     minimum_cruise_share: Annotated[float, Field(ge=0, lt=1)] = Field(
         default=0.0,
         description="Part of the acceleration that is not counted on for the speeds between corners that are close "
@@ -156,7 +161,7 @@ class PathConfig(StrictModel):
                 hint="add 'square_corner_mm_s' or 'junction_deviation_mm'",
                 at=("minimum_cruise_share",),
             )
-        for name in ("rounding_share", "last_share", "rounding_gap_s"):
+        for name in ("rounding_share", "last_share", "rounding_gap_s", "free_overlaps"):
             if getattr(self, name) and self.corner_share is None:
                 raise problem(f"'{name}' needs 'corner_share'", hint="add 'corner_share'", at=(name,))
         if self.corner_share is not None and (self.jerkrel > 0.0 or self.jerk_mm_s3 is not None):

@@ -301,6 +301,7 @@ class Machine:
         rows["rounding_share"] = path.rounding_share or 0.0
         rows["last_share"] = path.last_share or 0.0
         rows["rounding_gap_s"] = path.rounding_gap_s
+        rows["free_overlaps"] = path.free_overlaps
         if path.minimum_cruise_share > 0.0:
             rows["low_accel_mm_s2"] = highest * (1.0 - path.minimum_cruise_share)
 

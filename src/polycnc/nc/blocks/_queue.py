@@ -12,6 +12,7 @@ import numpy as np
 from polycnc.kernel import (
     GEO_WAIT_S,
     NOT_MERGED,
+    NOT_SMALL,
     RAPID,
     STOP,
     WAIT,
@@ -21,6 +22,7 @@ from polycnc.kernel import (
     Segments,
     append_arc,
     append_line,
+    append_small_arc,
     append_spline,
     append_wait,
     close_line,
@@ -174,7 +176,7 @@ class QueueWriter:
         return end - since > _LOOKED_AT
 
     def _append(self, item: QueueItem) -> None:
-        if not isinstance(item, Line):
+        if not isinstance(item, Line | Arc):
             self._close_line()
         match item:
             case Line():
@@ -189,9 +191,11 @@ class QueueWriter:
     def _has_room(self, item: QueueItem) -> bool:
         """Tell whether there is room: a line with a rounded corner takes two slots, a wait one and one per event.
 
-        One more is for the corner of a line that is complete.
+        One more is for the corner of a line that is complete, three for an arc that becomes two lines.
         """
         needed = 2 + (len(item.events) if isinstance(item, Wait) else 1)
+        if isinstance(item, Arc) and self.paths.row[self.path]["merge_mm"] > 0.0:
+            needed += 3
         return self.free >= needed
 
     def _put_line(self, item: Line) -> None:
@@ -211,22 +215,19 @@ class QueueWriter:
         append_line(self.seg, self.paths, self.path, self.limits, end, speed, flags, item.tag)
 
     def _put_arc(self, item: Arc) -> None:
-        p, q = item.plane[:2]
-        append_arc(
-            self.seg,
-            self.paths,
-            self.path,
-            self.limits,
-            np.array(item.end),
-            p,
-            q,
-            item.center[0],
-            item.center[1],
-            item.sweep_rad,
-            _speed(item.feed, self._arc_length(item)),
-            STOP if item.exact_stop else 0,
-            item.tag,
-        )
+        where = self.seg, self.paths, self.path, self.limits
+        arc = np.array(item.end), *item.plane[:2], item.center[0], item.center[1], item.sweep_rad
+        speed, flags = _speed(item.feed, self._arc_length(item)), STOP if item.exact_stop else 0
+        row = self.paths.row[self.path]
+        if row["merge_mm"] > 0.0:
+            last = int(row["tail"]) - 1
+            before = append_small_arc(*where, *arc, speed, flags, item.tag)
+            if before not in (NOT_SMALL, NOT_MERGED) and self.marks is not None:
+                self.marks.append((last, before))
+            if before != NOT_SMALL:
+                return
+        self._close_line()
+        append_arc(*where, *arc, speed, flags, item.tag)
 
     def _put_spline(self, item: Spline) -> None:
         append_spline(

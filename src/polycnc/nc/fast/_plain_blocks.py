@@ -17,6 +17,7 @@ import numpy.typing as npt
 
 from polycnc.kernel import (
     NOT_MERGED,
+    NOT_SMALL,
     RAPID,
     STOP,
     AxisLimits,
@@ -25,6 +26,7 @@ from polycnc.kernel import (
     add_line,
     append_arc,
     append_line,
+    append_small_arc,
     close_line,
     compiled,
     entry,
@@ -198,7 +200,7 @@ def _run(
         if seen & CARRIED_WORDS:
             powers = changes_power(seen, said[SAYS_SENSE], work.value, work.carried)
         tag = base + int(words.line[block])
-        moves, stopped, joined = False, False, NOT_MERGED
+        moves, stopped, joined, before = False, False, NOT_MERGED, 0
         circular = seen & (said[CENTERS] | said[RADIUS])
         if (seen & said[AXES]) | circular:
             is_arc = motion >= MOTION_ARC_CW
@@ -230,14 +232,23 @@ def _run(
                 close_line(seg, paths, g, limits)
             if seen & FUNCTIONS:
                 stopped = put_events(seg, paths, g, limits, work, tag)
+            before = path[g]["tail"]
             if is_arc:
                 p, q = whole[AXIS_P], whole[AXIS_Q]
                 center_p, center_q, sweep = work.arc[0], work.arc[1], work.arc[2]
-                if path[g]["merged"] > 0:
-                    close_line(seg, paths, g, limits)
-                append_arc(
-                    seg, paths, g, limits, work.target, p, q, center_p, center_q, sweep, speed, flags, tag
-                )
+                joined = NOT_SMALL
+                if path[g]["merge_mm"] > 0.0:
+                    joined = append_small_arc(
+                        seg, paths, g, limits, work.target, p, q, center_p, center_q, sweep, speed, flags, tag
+                    )
+                if joined == NOT_SMALL:
+                    if path[g]["merged"] > 0:
+                        close_line(seg, paths, g, limits)
+                    append_arc(
+                        seg, paths, g, limits, work.target, p, q, center_p, center_q, sweep, speed, flags, tag
+                    )
+                    joined = NOT_MERGED
+                moves = joined == NOT_MERGED
             elif path[g]["tolerance_mm"] > 0.0:
                 if path[g]["merged"] > 0:
                     joined = merge_line(seg, paths, g, limits, work.target, speed, flags, tag)
@@ -268,7 +279,7 @@ def _run(
         if seen & CARRIED_WORDS:
             take_note(seen, said[SAYS_SENSE], work.value, work.carried)
         if not moves and not stopped and work.marks.shape[0] > 0 and first < after:
-            work.marks[said[MARKED], 0] = path[g]["tail"] - (joined != NOT_MERGED)
+            work.marks[said[MARKED], 0] = path[g]["tail"] if joined == NOT_MERGED else before - 1
             work.marks[said[MARKED], 1] = tag if joined == NOT_MERGED else joined
             said[MARKED] += 1
         whole[MOTION] = motion

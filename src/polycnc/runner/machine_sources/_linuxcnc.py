@@ -111,6 +111,7 @@ def _corners(settings: Settings, period_s: float) -> dict[str, float | str]:
         "rounding_share": ARC_SHARE,
         "rounding_gap_s": min(gap, 1.0),
         "last_share": LAST_SHARE,
+        "free_overlaps": True,
     }
 
 
