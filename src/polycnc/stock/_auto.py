@@ -49,6 +49,9 @@ class _Moves:
 
     @classmethod
     def of(cls, course: Rows, tools: Mapping[int, Tool], hint: str) -> _Moves:
+        nothing = NoStockError("the program cuts nothing: no stock can be told", hint=hint)
+        if len(course.tool) < 2:
+            raise nothing
         radius = np.zeros(len(course.tool))
         for number in np.unique(course.tool).tolist():
             if (tool := tools.get(number)) is not None:
@@ -59,7 +62,7 @@ class _Moves:
         begin, end = course.tip[:-1][first], course.tip[1:][last]
         fed = ~rapid[last] & np.any(begin != end, axis=1)
         if not fed.any():
-            raise NoStockError("the program cuts nothing: no stock can be told", hint=hint)
+            raise nothing
         return cls(begin, end, block[last], radius[1:][last], fed, rapid[last])
 
     @property
