@@ -1,11 +1,12 @@
 """What a moving tool leaves of a body: tools with shape, height fields, sweeps, and what goes wrong in them."""
 
+from polycnc.stock._auto import NoStockError, around
 from polycnc.stock._contacts import Contact, ContactKind, Idle
 from polycnc.stock._course import Course
 from polycnc.stock._cutting import Cutting
 from polycnc.stock._engagement import Engagement
 from polycnc.stock._fixtures import check_fixtures, fixtures_of
-from polycnc.stock._form import Form, NoStockError, around, file_of
+from polycnc.stock._form import Form, file_of
 from polycnc.stock._insert import Insert, InsertKind, grooving_tool, iso_insert, threading_tool
 from polycnc.stock._mesh import Mesh
 from polycnc.stock._mesh_files import MESH_FORMATS

@@ -8,11 +8,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-import numpy as np
-
 from polycnc.errors import UsageError
-from polycnc.stock._contacts import ContactKind
-from polycnc.stock._cutting import Cutting
+from polycnc.stock._auto import NoStockError, around, around_turned
 from polycnc.stock._rows import Rows
 from polycnc.stock._solid import solid_stock
 from polycnc.stock._stock import Box, Stock, check_cell
@@ -21,18 +18,11 @@ from polycnc.stock._tool import Tool
 from polycnc.stock._turned import Turned
 from polycnc.stock._voxels import Voxels
 
-MARGIN_MM = 1.0
-"""Of an `auto` body around what is cut."""
 _FINER_TURNED = 5
-_COARSE_CELLS = 200
 CELLS_ACROSS = 1000
 """How many cells there are along the longer side where no resolution is given."""
 _FORMS = "auto, box=X0,Y0,Z0,X1,Y1,Z1, cylinder=D,Z0,Z1 or the name of an STL file"
 _TURNS = ("x", "y")
-
-
-class NoStockError(UsageError):
-    """A program that leaves nothing to say about stock: it cuts nothing, or in a way that is not simulated."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -177,82 +167,3 @@ def numbers_of(text: str, numbers: str, count: int, forms: str = _FORMS) -> list
     if len(values) != count or not all(map(math.isfinite, values)):
         raise UsageError(f"'{text}' is no body", hint=f"Write {forms}, with {count} numbers (mm) here.")
     return values
-
-
-def around(course: Rows, tools: Mapping[int, Tool]) -> Box:
-    """Return the box that holds what is cut, with a margin beside and below it.
-
-    Its top is program zero where the tool cuts below that, else the highest cut across. Where the tool gets down
-    into it at rapid, close to a side, the box ends beside it.
-
-    Raises:
-        UsageError: nothing is cut.
-    """
-    begin, end = course.tip[:-1], course.tip[1:]
-    cuts = ~course.rapid[1:] & np.any(begin != end, axis=1)
-    if not cuts.any():
-        raise NoStockError(
-            "the program cuts nothing: no stock can be told", hint="Give one, like box=0,0,-10,90,60,0."
-        )
-    radius = np.zeros(len(course.tool))
-    for number in np.unique(course.tool).tolist():
-        if (tool := tools.get(number)) is not None:
-            radius[course.tool == number] = tool.radius_mm
-    places, reach = np.concatenate((begin[cuts], end[cuts])), np.tile(radius[1:][cuts], 2)[:, None]
-    low_xy, high_xy = (
-        (places[:, :2] - reach).min(axis=0) - MARGIN_MM,
-        (places[:, :2] + reach).max(axis=0) + MARGIN_MM,
-    )
-    across = cuts & np.any(begin[:, :2] != end[:, :2], axis=1)
-    lowest = float(places[:, 2].min())
-    top = 0.0 if lowest < 0.0 else float(end[across if across.any() else cuts][:, 2].max())
-    top, below = top if top > lowest else lowest + MARGIN_MM, lowest - MARGIN_MM
-    low, high = [*low_xy.tolist(), below], [*high_xy.tolist(), top]
-    deep = course.rapid[1:] & (end[:, 2] < high[2])
-    if deep.any():
-        deep &= np.isin(course.block[1:], _met_at_rapid(course, tools, low, high))
-    for (x, y), away in zip(end[deep, :2].tolist(), radius[1:][deep].tolist(), strict=True):
-        _leave_out((x, y), away, low, high)
-    return Box((low[0], low[1], low[2]), (high[0], high[1], high[2]))
-
-
-def _met_at_rapid(course: Rows, tools: Mapping[int, Tool], low: list[float], high: list[float]) -> list[int]:
-    """Return the blocks that go through a box at rapid; what they have cut before does not count."""
-    box = Box((low[0], low[1], low[2]), (high[0], high[1], high[2]))
-    stock = Stock(box, max(high[0] - low[0], high[1] - low[1]) / _COARSE_CELLS)
-    cutting = Cutting(stock, tools)
-    cutting.add(course)
-    return [each.block for each in cutting.contacts if each.kind is ContactKind.RAPID]
-
-
-def around_turned(course: Rows) -> tuple[float, float, float]:
-    """Return diameter and ends along Z of the bar that holds what is turned.
-
-    It is as thick as the tool gets at a feed, ends 1 mm behind its last place, and begins where it is faced, at program
-    zero if it is not.
-
-    Raises:
-        NoStockError: nothing is cut.
-    """
-    begin, end = course.tip[:-1], course.tip[1:]
-    cuts = ~course.rapid[1:] & np.any(begin != end, axis=1)
-    if not cuts.any():
-        raise NoStockError(
-            "the program cuts nothing: no stock can be told", hint="Give one, like cylinder=30,-60,0."
-        )
-    places = np.concatenate((begin[cuts], end[cuts]))
-    faces = cuts & (np.abs(begin[:, 2] - end[:, 2]) < 1e-6) & (end[:, 0] <= 0.0)
-    high = float(end[faces][:, 2].max()) if faces.any() else 0.0
-    low = min(float(places[:, 2].min()), high - MARGIN_MM) - MARGIN_MM
-    return 2.0 * float(np.abs(places[:, 0]).max()), low, high
-
-
-def _leave_out(place: tuple[float, float], radius: float, low: list[float], high: list[float]) -> None:
-    """Draw one side of a box in, so that a tool that came to a place at rapid, beside what it cuts, is beside it."""
-    if any(not low[i] - radius < place[i] < high[i] + radius for i in range(2)):
-        return
-    sides = [(place[i] + radius - low[i], i, low) for i in range(2)]
-    sides += [(high[i] - place[i] + radius, i, high) for i in range(2)]
-    drawn, i, side = min(sides, key=lambda each: each[0])
-    if drawn <= 2.0 * (radius + MARGIN_MM):
-        side[i] = place[i] + radius if side is low else place[i] - radius

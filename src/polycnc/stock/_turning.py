@@ -38,6 +38,8 @@ class TurningCutting:
         self.stock = stock
         self.tally = Tally()
         self._tools = tools
+        self._first_turns: dict[int, float] = {}  # which way the spindle turned in the first cut of an insert
+        self._in_thread: Floats | None = None  # where a threading tool has ended, of its middle
         self._ways = WaysOfRows(CHORD_SHARE * stock.cell_mm, dict.fromkeys(tools, _LONGEST_MM))
 
     def add(self, rows: Rows) -> None:
@@ -58,24 +60,43 @@ class TurningCutting:
         if insert.inside:
             places[:, 0] *= -1.0
         figures = np.zeros((len(ways.ends), FIGURES))
-        if ways.rapid:
+        threads, out_of_thread = insert.kind is InsertKind.THREADING, self._leaves_thread(ways, places)
+        if ways.rapid and not out_of_thread:
             met = figures.copy()
             self._sweep(insert, outline, places[:-1], places[1:], met, narrower_mm=0.5 * self.stock.cell_mm)
             self._note(ContactKind.RAPID, ways, met, least)
-        if insert.kind is InsertKind.THREADING and not ways.rapid:
+        if threads and not ways.rapid:
             self._thread(ways, insert, outline, places, figures)
-        else:
+        elif not out_of_thread:
             self._sweep(insert, outline, places[:-1], places[1:], figures, cuts=True)
+        self._in_thread = places[-1] if threads and not ways.rapid else None
         self.tally.count(ways, figures, insert)
         self._note(ContactKind.HOLDER, ways, self._held(insert, places), least)
         if not ways.rapid:
             turns = ways.rows.turns[ways.ends]
             self._note(ContactKind.SPINDLE, ways, figures, least, turns == 0.0)
-            if insert.left_hand:
-                self._note(ContactKind.DIRECTION, ways, figures, least, turns > 0.0)
+            wrong = turns > 0.0 if insert.left_hand else self._turns_otherwise(ways, figures, least)
+            self._note(ContactKind.DIRECTION, ways, figures, least, wrong)
             self.tally.count_idle(
                 ways, figures, lambda first, last: self._is_near(insert, outline, places[first : last + 1])
             )
+
+    def _leaves_thread(self, ways: Ways, places: Floats) -> bool:
+        """Tell whether a tool is only lifted out of the groove that it has cut up to where it is."""
+        if not ways.rapid or self._in_thread is None:
+            return False
+        from_there = bool(np.allclose(places[0], self._in_thread, rtol=0.0, atol=1e-6))
+        return from_there and bool(np.all(np.diff(places[:, 0]) >= 0.0) and np.ptp(places[:, 1]) < 1e-6)
+
+    def _turns_otherwise(self, ways: Ways, figures: Floats, least_mm: float) -> npt.NDArray[np.bool_]:
+        """Tell where the spindle turns otherwise than in the first cut of an insert whose hand is not told."""
+        sign = np.sign(ways.rows.turns[ways.ends])
+        cuts = np.flatnonzero((figures[:, DEPTH_MM] > least_mm) & (sign != 0.0))
+        if len(cuts):
+            self._first_turns.setdefault(ways.number, float(sign[cuts[0]]))
+        return (
+            sign == -self._first_turns.get(ways.number, 0.0) if len(cuts) else np.zeros(len(sign), np.bool_)
+        )
 
     def _is_near(self, insert: Insert, outline: Floats, places: Floats) -> bool:
         """Tell whether a tool would cut if it were a little lower, or beside where it is."""

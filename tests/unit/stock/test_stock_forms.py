@@ -233,6 +233,7 @@ UNLIKE = ("probe", "thread mill", "T-slot mill", "dovetail mill", "lollipop mill
         ("TOOL - 4 DIA. OFF. - 4 LEN. - 4 DIA. - 6.5", Tool(ToolKind.FLAT, 6.5)),
         ("T1 offset 25 mm", None),
         ("POCKET DIA 40", None),
+        ("drill a bolt hole circle for 6 bolts at diameter 3 inches", None),
         ("TOOL/MILL,3.17, 0.00, 0.00, 0.00", Tool(ToolKind.FLAT, 3.17)),
         ("TOOL/MILL,6.35, 3.17, 0.00, 0.00", Tool(ToolKind.BALL, 6.35)),
         ("TOOL/MILL,8, 1.5, 20, 0", Tool(ToolKind.BULL, 8.0, corner_mm=1.5)),
