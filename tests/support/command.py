@@ -16,6 +16,7 @@ from polycnc.jit import COMPILING
 
 COMMAND = (sys.executable, "-m", "polycnc.cli")
 TIMEOUT_S = 240.0
+_LATE = {"COLUMNS"}  # variables that are looked at when something is printed
 
 
 def environment(**more: str) -> dict[str, str]:
@@ -35,7 +36,8 @@ def polycnc(
 ) -> subprocess.CompletedProcess[str]:
     """Run the command, hold it to an exit status, and return what it printed."""
     words = [str(each) for each in arguments]
-    done = _from_nothing(words, cwd, more) if more or not hasattr(os, "fork") else _forked(words, cwd)
+    is_forked = hasattr(os, "fork") and _LATE.issuperset(more)
+    done = _forked(words, cwd, more) if is_forked else _from_nothing(words, cwd, more)
     assert done.returncode == status, f"exit status {done.returncode}\n{done.stdout}\n{done.stderr}"
     assert "Traceback" not in done.stderr, done.stderr
     done.stderr = done.stderr.replace(f"{COMPILING}\n", "")  # said or not, depending on what ran before
@@ -59,9 +61,9 @@ def _from_nothing(
     )
 
 
-def _forked(words: list[str], cwd: Path | None) -> subprocess.CompletedProcess[str]:
+def _forked(words: list[str], cwd: Path | None, more: dict[str, str]) -> subprocess.CompletedProcess[str]:
     """Let a process that has its imports after it become the command."""
-    return _answered(words, cwd, {"arguments": words})
+    return _answered(words, cwd, {"arguments": words, "environment": more})
 
 
 def script(path: Path, text: str, cwd: Path, **more: str) -> subprocess.CompletedProcess[str]:

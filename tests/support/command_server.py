@@ -12,18 +12,21 @@ from __future__ import annotations
 
 import atexit
 import contextlib
+import functools
 import importlib
 import io
 import json
 import os
 import runpy
 import sys
+import tempfile
+from pathlib import Path
 from typing import Any
 
-import polycnc.cli
+import typer.main
+
 import polycnc.post  # noqa: F401
-from polycnc.nc import ProgramText
-from polycnc.runner import run
+from polycnc.cli._app import app
 
 
 def become(request: dict[str, Any]) -> None:
@@ -63,6 +66,24 @@ def become(request: dict[str, Any]) -> None:
     os._exit(status)
 
 
+def load_commands() -> None:
+    """Load what every command needs: the command line as it is built, the shipped files, the compiled functions."""
+    vars(typer.main)["get_command"] = functools.cache(typer.main.get_command)
+    with tempfile.TemporaryDirectory() as folder, contextlib.redirect_stdout(io.StringIO()):
+        program = Path(folder, "part.nc")
+        program.write_text("G1 X1 F99\nM30\n")
+        for words in (["run"], ["run", "--json"], ["check"]):
+            with contextlib.suppress(SystemExit):
+                app([*words, str(program)], prog_name="polycnc")
+
+
+def load_plots() -> None:
+    """Load what draws, which takes a second."""
+    with contextlib.suppress(ModuleNotFoundError):
+        for name in ("figure", "backends.backend_agg", "backends.backend_svg"):
+            importlib.import_module(f"matplotlib.{name}")
+
+
 def load_servers() -> None:
     """Load what `polycnc serve` needs, and make a machine of the kinds that are served most."""
     from polycnc.servers.process import KINDS, Machinery
@@ -90,14 +111,16 @@ def go_on(request: dict[str, Any]) -> None:
 
 def serve() -> None:
     """Answer requests until there are no more; a child leaves with its command."""
-    run(ProgramText.from_text("G1 X1 F99\nM30\n"), "mill3")
-    loaded = False
+    load_commands()
+    loaded = set()
     for line in sys.stdin:
         request = json.loads(line)
         goes_on = "status" in request
-        if goes_on and "code" not in request and "script" not in request and not loaded:
-            load_servers()
-            loaded = True
+        is_command = "code" not in request and "script" not in request
+        for load, wanted in ((load_servers, goes_on), (load_plots, "--plot" in request.get("arguments", ()))):
+            if is_command and wanted and load not in loaded:
+                load()
+                loaded.add(load)
         child = os.fork()
         if child == 0:
             if not goes_on:

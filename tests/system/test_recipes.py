@@ -39,10 +39,10 @@ def _prepared(source: Path, dialect: Path, *programs: str) -> list[tuple[list[li
 
 
 def _copy(folder: Path) -> Path:
-    """Return a copy of the package in a folder."""
+    """Return a copy of the package in a folder; what is not changed keeps its byte code, which goes by its time."""
     package = folder / "polycnc"
     shutil.copytree(
-        Path(polycnc.__file__).parent, package, ignore=shutil.ignore_patterns("__pycache__", "front")
+        Path(polycnc.__file__).parent, package, ignore=shutil.ignore_patterns("*-pytest-*", "front")
     )
     return package
 
