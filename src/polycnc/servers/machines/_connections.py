@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import contextlib
 import errno
+import os
 import socket
 from collections.abc import Callable, Iterable, Iterator
 from typing import Any, Generic, TypeVar
@@ -23,8 +24,14 @@ _NO_MORE = frozenset({errno.EMFILE, errno.ENFILE, errno.ENOBUFS, errno.ENOMEM})
 
 
 def notice_loss(transport: asyncio.BaseTransport) -> None:
-    """Let the system end a connection whose client has vanished without a word, after a minute."""
+    """Let the system end a connection whose client has vanished without a word, after a minute.
+
+    The last one that there is a file for is told to the event loop: not every loop tells of those that come after it.
+    """
     line: socket.socket | None = transport.get_extra_info("socket")
+    if line is not None and line.fileno() + 1 == _most_files():
+        error = OSError(errno.EMFILE, os.strerror(errno.EMFILE))
+        asyncio.get_running_loop().call_exception_handler({"message": "the last connection", "exception": error})
     if line is None or line.family not in (socket.AF_INET, socket.AF_INET6):
         return
     line.setsockopt(socket.SOL_SOCKET, socket.SO_KEEPALIVE, 1)
@@ -101,6 +108,15 @@ def take_all_files() -> None:
     _, most = resource.getrlimit(resource.RLIMIT_NOFILE)
     with contextlib.suppress(OSError, ValueError):
         resource.setrlimit(resource.RLIMIT_NOFILE, (most, most))
+
+
+def _most_files() -> int:
+    """Return how many files the process may have, -1 where there is no limit."""
+    try:
+        import resource
+    except ImportError:
+        return -1
+    return resource.getrlimit(resource.RLIMIT_NOFILE)[0]
 
 
 def tell_errors(loop: asyncio.AbstractEventLoop, tell: Callable[[str, str], None]) -> None:
