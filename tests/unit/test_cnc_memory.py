@@ -25,8 +25,14 @@ def clock() -> Clock:
 
 
 @pytest.fixture
-def memory(clock: Clock) -> ProgramMemory:
-    return ProgramMemory(Store(), clock)
+def running() -> set[str]:
+    """The programs that are being executed."""
+    return set()
+
+
+@pytest.fixture
+def memory(clock: Clock, running: set[str]) -> ProgramMemory:
+    return ProgramMemory(Store(), clock, running=lambda: frozenset(running))
 
 
 def refused(reason: Refusal, call: Callable[[], object]) -> None:
@@ -67,13 +73,13 @@ def test_rename_copy_delete_and_search(memory: ProgramMemory, clock: Clock) -> N
     assert list(memory) == ["O12"]
 
 
-def test_what_is_refused_changes_nothing(memory: ProgramMemory) -> None:
+def test_what_is_refused_changes_nothing(memory: ProgramMemory, running: set[str]) -> None:
     memory.create("A", PART)
     memory.create("RUNS", PART)
     memory.create("SAFE", PART)
     memory.create("OPEN", PART)
     memory.protect("SAFE")
-    memory.running = frozenset({"RUNS"})
+    running.add("RUNS")
     memory.begin_edit("OPEN")
     before = (memory.directory(), [memory.read(name) for name in memory])
     refused(Refusal.EXISTS, lambda: memory.create("A", b""))
@@ -161,10 +167,10 @@ def test_an_edit_changes_lines_and_keeps_the_other_bytes(memory: ProgramMemory) 
     memory.delete("P")
 
 
-def test_a_program_that_starts_to_run_can_no_longer_be_edited(memory: ProgramMemory) -> None:
+def test_a_program_that_starts_to_run_can_no_longer_be_edited(memory: ProgramMemory, running: set[str]) -> None:
     memory.create("P", PART)
     with ProgramEdit(memory, "P") as edit:
-        memory.running = frozenset({"P"})
+        running.add("P")
         refused(Refusal.IN_USE, lambda: edit.delete(1))
     assert memory.read("P") == PART
 

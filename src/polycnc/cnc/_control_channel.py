@@ -91,10 +91,7 @@ class ControlChannel:
         """The names of the programs that are being executed, callers and called."""
         if self.run is None or not (self.active or self.interrupted or self.broken):
             return frozenset()
-        names = {self.run.program.name}
-        if (block := self.run.reading.block) is not None:
-            names |= {block.program, *(call.program for call in block.stack)}
-        return frozenset(names)
+        return frozenset({self.run.program.name, *self.run.reading.programs})
 
     @property
     def prepared(self) -> BlockRecord | None:

@@ -52,7 +52,6 @@ def make_parts(
     """
     store, clock, config = machine.memory, machine.clock, machine.config
     owners = {axis: n for n, share in enumerate(shares) for axis in share.axes} if are_given else {}
-    programs = ProgramMemory(store, clock, data.memory)
     tools, offsets = ToolTable(store, config), OffsetTable(store, config)
     alarms = AlarmList(store, clock, data.alarms, keep=data.history_length, owners=owners)
     spindle = Spindle(clock, config)
@@ -68,6 +67,9 @@ def make_parts(
         languages=languages,
         library=library,
         on_event=on_event,
+    )
+    programs = ProgramMemory(
+        store, clock, data.memory, lambda: frozenset().union(*(channel.programs for channel in channels))
     )
     return ControlParts(
         machine=machine,

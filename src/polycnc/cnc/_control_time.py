@@ -52,7 +52,6 @@ class ControlTime:
         self.watch: CycleWatch | None = None
         self.is_enough: Condition | None = None
         self._noted = [channel.run_state for channel in of.channels]
-        self._known: list[tuple[object, ...]] = []  # what the programs that are executed were found by
 
     def advance(self, cycles: int, *, until: int | Condition | None = None) -> int:
         """Let up to `cycles` control cycles pass; return how many did (see `Control.advance`)."""
@@ -124,7 +123,6 @@ class ControlTime:
             if self._of.machine.state.servo.error_tripped[index]:
                 self._of.alarms.put("following_error", axis=axis.name)
         self._fail_for(alarms)
-        self.note_running()
 
     def _fail_for(self, before: tuple[Alarm, ...]) -> None:
         """Stop what the alarms stop that have come since these."""
@@ -138,13 +136,11 @@ class ControlTime:
         self._noted[channel.path] = RunState.ACTIVE
         self._note_state(channel)
         self._fail_for(alarms)
-        self.note_running()
         self.raised |= ControlEvent.RUN_STATE
 
     def forget(self) -> None:
         """Take what channels do now as known."""
         self._noted = [channel.run_state for channel in self._of.channels]
-        self.note_running()
 
     def _note_state(self, channel: ControlChannel) -> None:
         """Count the part of a program that has ended since this was asked last, or put its error among the alarms.
@@ -164,18 +160,6 @@ class ControlTime:
             name, axis = self._of.alarms.of_program(error)
             detail = str(error).splitlines()[0] if name == "program" else error.what
             self._of.alarms.put(name, axis=axis, detail=detail, channel=channel.path)
-
-    def note_running(self) -> None:
-        """Let the program memory know which programs are executed."""
-        found: list[tuple[object, ...]] = [
-            (channel.run_state, channel.returning, channel.executed, channel.run and channel.run.program)
-            for channel in self._of.channels
-        ]
-        if found != self._known:
-            self._known = found
-            self._of.programs.running = frozenset().union(
-                *(channel.programs for channel in self._of.channels)
-            )
 
     def _take_answers(self, channel: ControlChannel) -> None:
         if self._of.functions.take_answers(channel):

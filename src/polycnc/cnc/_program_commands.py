@@ -203,7 +203,6 @@ class ProgramCommands:
         for axis in (axis for each in chosen for axis in each.axes):
             self._of.machine.state.servo.error_tripped[names.index(axis)] = 0
         self._of.manual.check_limit_switches()
-        self._time.note_running()
         self._time.raised |= ControlEvent.RUN_STATE
 
     def emergency_stop(self, on: bool = True) -> None:
@@ -214,7 +213,6 @@ class ProgramCommands:
             self._time.raised |= ControlEvent.ALARM
             break_off(self._of, self._of.channels)
             self._of.spindle.stop()
-            self._time.note_running()
         elif not on and self._of.emergency is Emergency.ON:
             self._of.alarms.cause_gone("emergency_stop")
             self._of.clock.changes += 1

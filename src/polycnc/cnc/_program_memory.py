@@ -70,12 +70,18 @@ class ProgramMemory:
     being executed and `edited` the ones being edited: others leave both alone.
     """
 
-    def __init__(self, store: Store, clock: Clock, data: MemoryData | None = None) -> None:
+    def __init__(
+        self,
+        store: Store,
+        clock: Clock,
+        data: MemoryData | None = None,
+        running: Callable[[], frozenset[str]] = frozenset,
+    ) -> None:
         self.data = data or MemoryData()
         self.write_protected = False
         self.revision = 0
         """Grows with every change of the directory or of a program."""
-        self.running: frozenset[str] = frozenset()
+        self._running = running
         self.edited: frozenset[str] = frozenset()
         self._store = store
         self._clock = clock
@@ -83,6 +89,11 @@ class ProgramMemory:
         self._found: tuple[int, dict[str, ProgramText | None]] = (0, {})
 
     # ------------------------------------------------------------------ reading
+
+    @property
+    def running(self) -> frozenset[str]:
+        """The names of the programs that are being executed, callers and called."""
+        return self._running()
 
     def __contains__(self, name: object) -> bool:
         return isinstance(name, str) and name in self._area

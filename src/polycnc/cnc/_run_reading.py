@@ -74,6 +74,11 @@ class RunReading:
         return self._feed.channel.records.tool(self.tag)
 
     @property
+    def programs(self) -> tuple[str, ...]:
+        """The names of the program that the executed block is in, and of those that led there by calls."""
+        return self._feed.channel.records.programs(self.tag)
+
+    @property
     def stack(self) -> tuple[Call, ...]:
         """The calls that led to the executed block, the outermost first."""
         record = self.block

@@ -314,6 +314,11 @@ class BlockRecords:
         context = self._contexts.get(tag >> CONTEXT_SHIFT)
         return None if context is None else context.text.name
 
+    def programs(self, tag: int) -> tuple[str, ...]:
+        """Return the names of the program that a tag refers to, and of those that led there by calls."""
+        context = self._contexts.get(tag >> CONTEXT_SHIFT)
+        return () if context is None else (context.text.name, *(call.program for call in context.stack))
+
     def snapshot(self) -> SavedRecords:
         """Return all contexts, to go back to."""
         contexts = {number: context.key() for number, context in self._contexts.items()}

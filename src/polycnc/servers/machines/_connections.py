@@ -31,7 +31,9 @@ def notice_loss(transport: asyncio.BaseTransport) -> None:
     line: socket.socket | None = transport.get_extra_info("socket")
     if line is not None and line.fileno() + 1 == _most_files():
         error = OSError(errno.EMFILE, os.strerror(errno.EMFILE))
-        asyncio.get_running_loop().call_exception_handler({"message": "the last connection", "exception": error})
+        asyncio.get_running_loop().call_exception_handler(
+            {"message": "the last connection", "exception": error}
+        )
     if line is None or line.family not in (socket.AF_INET, socket.AF_INET6):
         return
     line.setsockopt(socket.SOL_SOCKET, socket.SO_KEEPALIVE, 1)
