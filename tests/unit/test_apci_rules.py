@@ -158,7 +158,9 @@ def test_a_program_that_polls_a_board_it_never_initialised_is_told_once(
 ERRORS = (Ifs.pfe, Ifs.wdog, Ifs.iae, Ifs.scwdog, Ifs.scpfe, Ifs.BusError, Ifs.EpmBaseResetFlag)
 
 
-@pytest.mark.covers("apci.rifs", "apci.rddigib", "apci.wrdigob", "apci.rddigib.bitnr.3", "apci.rddigib.bitnr.4")
+@pytest.mark.covers(
+    "apci.rifs", "apci.rddigib", "apci.wrdigob", "apci.rddigib.bitnr.3", "apci.rddigib.bitnr.4"
+)
 @pytest.mark.covers("apci.rule.ifs_error", "apci.ssf.1004")
 @pytest.mark.parametrize("error", [*ERRORS, Ifs.EpmOpmfResetFlag])
 def test_an_error_in_ifs_resets_inputs_and_outputs_until_the_next_boot(tmp_path: Path, error: Ifs) -> None:
