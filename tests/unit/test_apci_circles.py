@@ -180,7 +180,7 @@ def test_a_queued_helix(pc: Pc, name: str, phi: float) -> None:
 
 
 @pytest.mark.covers("apci.mha")
-@pytest.mark.parametrize(("phi", "turned"), [(1e-101, 90.0), (-1e-101, -270.0)])
+@pytest.mark.parametrize(("phi", "turned"), [(1e-100, 90.0), (-1e-100, -270.0)])
 @pytest.mark.covers("apci.HMP.phi", "apci.HMP.dtm", "apci.const.phithreshold")
 def test_a_helix_without_an_angle_ends_on_the_ray_to_its_target_point(
     pc: Pc, phi: float, turned: float
@@ -193,6 +193,16 @@ def test_a_helix_without_an_angle_ends_on_the_ray_to_its_target_point(
     assert tuple(track[-1]) == near((19.0, 5.0, 4.0 + RISE))
     flat = track * [1.0, 1.0, 0.0] + [0.0, 0.0, 4.0]
     assert turned_deg(flat, CENTER, UP) == near(turned, abs=1e-6)
+
+
+@pytest.mark.covers("apci.mha", "apci.HMP.phi", "apci.const.phithreshold")
+@pytest.mark.parametrize("phi", [1.5e-100, -1.5e-100])
+def test_an_angle_above_the_threshold_is_one(pc: Pc, phi: float) -> None:
+    axes = at_start(pc)
+    x, y, _ = CENTER
+    pcap.mha(axes, pcap.HMP(**SPEEDS, phi=phi, dtca1=x, dtca2=y, dtm=by_axis(19.0, 5.0, 4.0 + RISE)))
+    track = tracked(pc)[1]
+    assert tuple(track[-1][:2]) == near(tuple(START[:2]))  # it hardly turns
 
 
 # ------------------------------------------------------------------ circles in space

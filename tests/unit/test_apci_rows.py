@@ -124,18 +124,21 @@ def test_what_ends_booting_has_its_number_and_the_board_is_booted_after_it(
     assert two.initialise() == (0, 32)
 
 
-@pytest.mark.covers("apci.BootFile")
+@pytest.mark.covers("apci.BootFile", "apci.file.rwmos_elf")
 @pytest.mark.parametrize(
     ("name", "code"),
     [
         pytest.param(name, code, marks=pytest.mark.covers(f"apci.BootFile.ret.{code}"))
         for name, code in [("", 10), ("a|b.elf", 10), ("none.elf", 11), ("system.dat", 12), ("empty.elf", 12)]
+        + [("near.elf", 12), ("turned.elf", 12), ("short.elf", 12)]
     ],
 )
 def test_a_file_that_is_not_taken_changes_nothing(
     two: TwoBoards, tmp_path: Path, name: str, code: int
 ) -> None:
-    (tmp_path / "empty.elf").write_bytes(b"")
+    wrong = {"empty": b"", "near": b"\x7fELG\1\1", "turned": b"FLE\x7f\1\1", "short": b"\x7fEL"}
+    for stem, content in wrong.items():
+        (tmp_path / f"{stem}.elf").write_bytes(content)
     assert two.initialise()[0] == 0
     pcap.cl(pcap.AS.of(1, 3))
     assert pcap.BootFile(name, 0) == code

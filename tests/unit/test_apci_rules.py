@@ -158,24 +158,26 @@ def test_a_program_that_polls_a_board_it_never_initialised_is_told_once(
 ERRORS = (Ifs.pfe, Ifs.wdog, Ifs.iae, Ifs.scwdog, Ifs.scpfe, Ifs.BusError, Ifs.EpmBaseResetFlag)
 
 
-@pytest.mark.covers("apci.rifs", "apci.rddigib", "apci.wrdigob")
-@pytest.mark.covers("apci.rule.ifs_error")
+@pytest.mark.covers(
+    "apci.rifs", "apci.rddigib", "apci.wrdigob", "apci.rddigib.bitnr.3", "apci.rddigib.bitnr.4"
+)
+@pytest.mark.covers("apci.rule.ifs_error", "apci.ssf.1004")
 @pytest.mark.parametrize("error", [*ERRORS, Ifs.EpmOpmfResetFlag])
 def test_an_error_in_ifs_resets_inputs_and_outputs_until_the_next_boot(tmp_path: Path, error: Ifs) -> None:
     (tmp_path / "rwmos.elf").write_bytes(b"\x7fELF")
-    system = "[inputs]\n5 = { inverted = true }\n"
+    system = "[inputs]\n4 = { inverted = true }\n"
     installed = InstalledBoard(parse_system_file(system))
     pcap.attach(installed, folder=tmp_path, clock=None)
 
     def initialise() -> None:
         pcap.InitMcuSystem3(pcap.tsrp_array(), pcap.ROSI(), 0, "system.dat")
         installed.board.set_input(3, True)
-        installed.board.set_input(5, True)
+        installed.board.set_input(4, True)
         pcap.wrdigob(0, 2, 1)
         installed.board.advance(2)
 
     def levels() -> tuple[int, ...]:
-        inputs = (pcap.rddigib(0, 3), pcap.rddigib(0, 5))
+        inputs = (pcap.rddigib(0, 3), pcap.rddigib(0, 4))
         return (*inputs, installed.board.outputs)
 
     initialise()
@@ -186,6 +188,12 @@ def test_an_error_in_ifs_resets_inputs_and_outputs_until_the_next_boot(tmp_path:
     pcap.wrdigob(0, 4, 1)
     installed.board.advance(3)
     assert levels() == (0, 1, 0)
+    pcap.cl(axes := pcap.AS.of(0))
+    pcap.ssf(0, 1004, 0x08)  # the inverted input is active for the board itself
+    pcap.ssf(0, 9, 1.0)
+    pcap.ssms(axes)
+    installed.board.advance(3)
+    assert installed.board.state.ci[9] == 1
     pcap.rifs(pcap.TSRP(an=0))
     installed.board.advance(3)
     assert levels() == (0, 1, 0)

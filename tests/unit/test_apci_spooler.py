@@ -429,11 +429,12 @@ def test_target_velocity_can_be_given_while_the_move_runs() -> None:
 
 
 @pytest.mark.covers("apci.smlai", "apci.smlri", "apci.ssfi", "apci.rdPcapIndex")
-def test_lines_and_special_functions_have_an_index() -> None:
+@pytest.mark.parametrize("indices", [[11, 12, 13], [7, 0, 0x7FFFFFFF], [0, 5, 0]])
+def test_lines_and_special_functions_have_an_index(indices: list[int]) -> None:
     rig = Rig()
-    mla(rig.board, (0,), (1.0,), SLOW, spool=True, index=11)
-    ssf(rig.board, 0, 1003, 20 * 10, index=12)
-    mlr(rig.board, (0,), (1.0,), SLOW, spool=True, index=13)
+    mla(rig.board, (0,), (1.0,), SLOW, spool=True, index=indices[0])
+    ssf(rig.board, 0, 1003, 20 * 10, index=indices[1])
+    mlr(rig.board, (0,), (1.0,), SLOW, spool=True, index=indices[2])
     ssms(rig.board, (0,))
     row = rig.board.state.axis[0]
     seen: list[int] = []
@@ -441,7 +442,7 @@ def test_lines_and_special_functions_have_an_index() -> None:
         rig.board.advance(1)
         if not seen or seen[-1] != row["pcap_index"]:
             seen.append(int(row["pcap_index"]))
-    assert seen == [11, 12, 13]
+    assert seen == indices
 
 
 @pytest.mark.covers("apci.mode.direct")
