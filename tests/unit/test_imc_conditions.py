@@ -132,11 +132,12 @@ CELLS = [f"user{width}b{k}" for width, count in ((16, 10), (32, 10), (48, 5)) fo
 def test_what_is_kept_outlives_everything_that_clears_stops_or_refers_the_axes() -> None:
     card = ready_card()
     written: dict[tuple[str, int], int] = {}
-    for k, name in enumerate((*KEPT_BY_AXIS, *KEPT_BY_CARD, *CELLS)):
+    names = (*KEPT_BY_AXIS, *KEPT_BY_CARD, *CELLS)
+    for k, name in enumerate((*names, *reversed(names))):  # each neighbour is written before and after
         each = PARAMETERS[name]
-        for axis in range(4) if each.scope == "A" else (0,):
+        for axis in range(4) if each.scope == "A" else (k % 4,):
             value = (0x1A51 + 97 * k + 7 * axis) << 16 * (each.words - 1) | 1 + axis
-            written[name, axis] = value
+            written[name, axis if each.scope == "A" else 0] = value
             card.write_raw(each.address, value, axis, each.words)
     for name in ("sethome", "clear", "gohome", "mcsgo", "engear", "capture"):
         set_now(card, *((name, FLAG, axis) for axis in range(4)))
