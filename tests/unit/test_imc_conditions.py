@@ -4,8 +4,21 @@ from __future__ import annotations
 
 import pytest
 
-from polycnc.controllers.imc.core._parameters import PARAMETERS
-from support.imc_card import FLAG, IFIFO, ready_card, send, set_now, shows, trace
+from polycnc.controllers.imc.core._instructions import WaitParam
+from polycnc.controllers.imc.core._parameters import PARAMETERS, address
+from support.imc_card import (
+    FLAG,
+    IFIFO,
+    QFIFO,
+    event,
+    install,
+    ready_card,
+    send,
+    set_now,
+    setting,
+    shows,
+    trace,
+)
 
 QUICK = [(f"{system}{name}", 1000.0, 1) for system in ("mcs", "pcs") for name in ("accel", "decel")]
 
@@ -119,11 +132,12 @@ CELLS = [f"user{width}b{k}" for width, count in ((16, 10), (32, 10), (48, 5)) fo
 def test_what_is_kept_outlives_everything_that_clears_stops_or_refers_the_axes() -> None:
     card = ready_card()
     written: dict[tuple[str, int], int] = {}
-    for k, name in enumerate((*KEPT_BY_AXIS, *KEPT_BY_CARD, *CELLS)):
+    names = (*KEPT_BY_AXIS, *KEPT_BY_CARD, *CELLS)
+    for k, name in enumerate((*names, *reversed(names))):  # each neighbour is written before and after
         each = PARAMETERS[name]
-        for axis in range(4) if each.scope == "A" else (0,):
+        for axis in range(4) if each.scope == "A" else (k % 4,):
             value = (0x1A51 + 97 * k + 7 * axis) << 16 * (each.words - 1) | 1 + axis
-            written[name, axis] = value
+            written[name, axis if each.scope == "A" else 0] = value
             card.write_raw(each.address, value, axis, each.words)
     for name in ("sethome", "clear", "gohome", "mcsgo", "engear", "capture"):
         set_now(card, *((name, FLAG, axis) for axis in range(4)))
@@ -150,7 +164,8 @@ def test_what_is_kept_outlives_everything_that_clears_stops_or_refers_the_axes()
         assert card.read_raw(each.address, axis, each.words) == value, (name, axis)
 
 
-@shows("hpause mcsdecel mcsaccel mcsvel mcsmaxvel mcsgo pcsdecel pcsaccel pcsvel pcsmaxvel pcsgo")
+@shows("moving profiling motion curvel hpause mcsdecel mcsaccel mcsvel mcsmaxvel mcsgo")
+@shows("pcsdecel pcsaccel pcsvel pcsmaxvel pcsgo")
 @pytest.mark.parametrize("system", ["mcs", "pcs"])
 @pytest.mark.parametrize("pause", ["hpause", "haltstep"])
 def test_a_move_pauses_with_its_deceleration_and_goes_on_with_its_acceleration(
@@ -163,6 +178,12 @@ def test_a_move_pauses_with_its_deceleration_and_goes_on_with_its_acceleration(
     set_now(card, (pause, 0x200, 2))
     assert trace(card, f"{system}vel", 13, 2) == [-5.5 + 0.5 * k for k in range(12)] + [0]
     assert [card.read(f"{system}{name}", 2) for name in ("go", "moving")] == [FLAG, FLAG]
+    assert [card.read(name, 2) for name in ("curvel", "profiling", "moving", "motion")] == [
+        0,
+        FLAG,
+        FLAG,
+        FLAG,
+    ]
     set_now(card, (pause, 0, 2))
     assert trace(card, f"{system}vel", 4, 2) == [-1, -3, -5, -6]  # means of the cycles of a ramp of 2
 
@@ -208,3 +229,93 @@ def test_speeds_of_a_search_count_without_their_sign(
     seen = trace(card, "mcsvel", 80)
     assert card.read("gohome") == 0
     assert (max(seen, key=abs), min(seen) if way > 0 else max(seen)) == speeds
+
+
+@shows("delayus timer ticks")
+def test_what_counts_has_no_sign() -> None:
+    card = ready_card()
+    set_now(card, ("delayus", 3_000_000_500), ("timer", 40_000), ("ticks", 2**31 - 3))
+    card.advance(5)
+    assert [card.read(name) for name in ("delayus", "timer", "ticks")] == [2_999_995_500, 39_995, 2**31 + 2]
+    set_now(card, ("delayus", 2500), ("timer", 2), ("ticks", 2**32 - 2))
+    card.advance(3)
+    assert [card.read(name) for name in ("delayus", "timer", "ticks")] == [0, 0, 1]
+
+
+@shows("master synaxis gearsrc synsrc engear startsyn mcsvel")
+@pytest.mark.covers("imc.const.AXISNUM", "imc.concept.gear_law", "imc.concept.sync_laws")
+@pytest.mark.parametrize("nobody", [3, 4, 32767, 65535])
+def test_an_axis_that_is_not_there_is_not_followed(nobody: int) -> None:
+    card = ready_card("number_of_axes = 3\n")
+    set_now(
+        card, *((name, value, axis) for axis in (0, 2) for name, value in (("mcsaccel", 9), ("mcstgvel", 9)))
+    )
+    set_now(card, ("gearratio", 1, 1), ("master", nobody, 1), ("gearsrc", 4, 1), ("engear", FLAG, 1))
+    card.advance(12)
+    assert [card.read(name, 1) for name in ("engear", "mcsvel", "curpos")] == [FLAG, 0, 0]
+    set_now(card, ("engear", 0, 1))
+    card.advance(1)
+    set_now(card, ("syntype", FLAG, 1), ("synaxis", nobody, 1), ("synsrc", 225, 1))
+    set_now(card, ("synsrcvar", 50, 1), ("slavedist", 70, 1), ("enasyn", FLAG, 1), ("startsyn", FLAG, 1))
+    card.advance(12)
+    assert [card.read(name, 1) for name in ("startsyn", "mcsvel", "curpos")] == [FLAG, 0, 0]
+
+
+NO_EFFECT = {
+    "fixvel": -3.5, "encsctr": -1, "aiod": -1, "stepmod": 0x5A5A, "dirtime": 40_000, "steptime": -0x5A5B,
+    "waitfilt": -1, "waitequ": 0x1234, "eventid": 60_000, "eventbase": 300, "out1": -1, "out2": 0x300,
+    "gio": 0x7FFF, "giod": -2,
+}  # fmt: skip
+
+
+@shows(" ".join(NO_EFFECT))
+def test_what_has_no_known_meaning_has_no_effect() -> None:
+    runs = []
+    for values in ({}, NO_EFFECT):
+        card = ready_card(
+            "number_of_axes = 3\n[[axis]]\nlimit_positive = 90\nprobe = { first = 11, pitch = 20 }\n"
+            "[[axis]]\norigin = [40, 60]\nindex = { first = 43, pitch = 9 }\n[[axis]]\nlag_s = 0.003\ngain = 80.0\n"
+        )
+        axes = [(name, value, i) for i in range(3) for name, value in values.items()]
+        set_now(card, *axes, ("aioctr", 3, 0), ("encpctr", 0x400, 0), ("mcstgvel", 6, 0), ("smooth", 3, 2))
+        set_now(
+            card,
+            ("homeseq", 0x2C, 1),
+            ("gohome", FLAG, 1),
+            ("mcsdist", 300, 2),
+            ("mcsgo", FLAG, 2),
+            ("timer", 70),
+        )
+        install(card, event("ADD32i", first=317, constant=3, target=317))
+        card.push(QFIFO, WaitParam(address("user16b3"), 5, 20))
+        card.push(QFIFO, setting("pcstgvel", 2, 2))
+        card.turn_handwheel(1, 33)
+        card.advance(70)
+        memory = card.state.memory.copy()
+        for name in NO_EFFECT:
+            each = PARAMETERS[name]
+            memory[:, each.address : each.address + each.words] = 0
+        runs.append((memory, card.kernel.servo.actual.copy()))
+    (plain, places), (marked, others) = runs
+    assert (plain == marked).all()
+    assert list(places) == list(others)
+    assert all(abs(place) > 20 for place in places)
+
+
+@shows("vellim accellim curvel error run")
+@pytest.mark.covers("imc.concept.mcs_pcs", "imc.concept.superposition")
+@pytest.mark.parametrize("way", [1, -1])
+def test_the_limits_of_any_motion_are_for_both_systems_together(way: int) -> None:
+    names = ("curvel", "error", "run")
+    for accels, goals, limits, expected in (
+        ((1, 1), (3, 3), (5, 9), (6, 0x2000, 0)),  # 2, 4, 6: each alone is slow enough
+        ((2, 1), (6, -3), (5, 9), (3, 0, FLAG)),  # 6 alone would be too fast
+        ((2, 2), (6, 6), (99, 3), (4, 0x4000, 0)),  # from 0 to 4 at once
+        ((4, 2), (12, -6), (99, 3), (6, 0, FLAG)),
+    ):
+        card = ready_card()
+        given = zip(("mcsaccel", "pcsaccel", "vellim", "accellim"), (*accels, *limits), strict=True)
+        set_now(card, *((name, value, 2) for name, value in given))
+        set_now(card, ("mcstgvel", goals[0] * way, 2), ("pcstgvel", goals[1] * way, 2))
+        card.advance(1 if expected[1] == 0x4000 else 3)
+        assert tuple(card.read(name, 2) for name in names) == (expected[0] * way, *expected[1:])

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from typing import Any
 
 import pytest
 
@@ -32,10 +33,11 @@ def test_a_segment_has_as_many_axes_as_the_card_and_16_at_most(axes: int, most: 
     handle = opened(card, clock=None)
     data, info = line(most), fast(most)
     data.SegEndData[0:most] = info.data.SegEndData[0:most] = [-70_001 * (k + 1) for k in range(most)]
-    for given, add in (
+    calls: list[tuple[Any, Any]] = [
         (data, lib.IMC_AddLineN), (info, lib.IMC_AddLineNWithVel), (data, lib.IMC_AddArcLine),
         (info, lib.IMC_AddArcLineWithVel),
-    ):  # fmt: skip
+    ]  # fmt: skip
+    for given, add in calls:
         assert add(handle, given, P2) == lib.IMC_OK
         fifo, sent = card.told[-1]
         assert isinstance(sent, Segment)

@@ -175,7 +175,8 @@ def test_a_bad_line_keeps_instructions_from_the_card() -> None:
     assert (card.told, card.cleared) == ([], [])
 
 
-@pytest.mark.covers("imc.IMC_GetParamBit")
+@pytest.mark.covers("imc.IMC_GetParamBit", "imc.IMC_GetParam16", "imc.fifo.SEL_IFIFO", "imc.concept.ififo")
+@pytest.mark.covers("imc.fifo.SEL_QFIFO", "imc.status.IMC_FIFO_FULL")
 def test_time_passes_when_a_program_reads_or_finds_a_queue_full() -> None:
     here, there = ToldCard(), ToldCard()
     handle = opened(here, clock=Poll(7))

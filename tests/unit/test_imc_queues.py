@@ -403,7 +403,9 @@ def test_every_queue_takes_the_same_instructions_and_carries_them_out_in_order(
 
 
 @pytest.mark.covers("imc.fifo.SEL_QFIFO", "imc.fifo.SEL_PFIFO1", "imc.fifo.SEL_PFIFO2")
-@pytest.mark.covers("imc.IMC_ClearFIFO")
+@pytest.mark.covers(
+    "imc.IMC_ClearFIFO", "imc.concept.instruction_fifos", "imc.concept.ififo", "imc.fifo.SEL_IFIFO"
+)
 @shows("clrqfifo user16b0 user16b1 user16b2")
 @pytest.mark.parametrize("before", [0, 1, 3])
 @pytest.mark.parametrize("times", [1, 2])
@@ -448,10 +450,12 @@ def test_lines_sent_right_after_an_emptying_are_gone_along() -> None:
 
 
 @pytest.mark.covers("imc.fifo.SEL_CFIFO", "imc.concept.cfifo", "imc.IMC_ClearFIFO", "imc.IMC_AddContourData")
+@pytest.mark.covers("imc.concept.instruction_fifos")
+@shows("cfifocnt")
 def test_points_sent_right_after_an_emptying_stay() -> None:
     card = ready_card()
     assert card.push_points([1, 2, 3])
     send(card, IFIFO, ("clrCFIFO", FLAG))
     assert card.push_points([4, 5])
     card.advance(1)
-    assert card.waiting_words(Fifo.SEL_CFIFO) == 2
+    assert card.waiting_words(Fifo.SEL_CFIFO) == card.read("cfifocnt") == 2
