@@ -399,6 +399,7 @@ SIZES = {0: 1, 1: 1, 2: 2, 3: 4}
 @covers(
     "cnc_rdparar", "example.cnc_rdparar", "concept.param_record_stream", "concept.axis_param_rule", "enum.prm_attr.0",
     "enum.prm_attr.1", "enum.prm_attr.2", "enum.prm_attr.3", "concept.sparse_parameters", "concept.range_growth",
+    "struct.IODBPSD", "IODBPSD.type",
 )  # fmt: skip
 def test_a_range_of_parameters_is_a_sequence_of_records() -> None:
     control, handle = attached(axes=3)

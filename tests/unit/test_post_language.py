@@ -129,9 +129,26 @@ def test_an_assignment_gives_a_new_value_made_of_the_old_one() -> None:
     assert _value("V2-V1", "<V2=3>\n<V1=V2>\n<V2=0>\n<V3=5>") == -3.0
 
 
+@pytest.mark.covers("post.macro.line_is_block")
+def test_only_a_line_feed_ends_a_line() -> None:
+    assert blocks_of("A\u2028B\x85C\u2029\nD") == ["A\u2028B\x85C\u2029", "D"]
+
+
 @pytest.mark.covers("post.op.assign", "post.expr.newvar", "post.expr.case")
 def test_names_of_any_length_are_told_apart_but_not_by_their_case() -> None:
-    names = ("DEPTH", "DEPTH1", "DEPTH_1", "DE", "D", "A1234567890B", "A1234567890C")
+    long = "A" + "1234567890_B" * 6
+    names = (
+        "DEPTH",
+        "DEPTH1",
+        "DEPTH_1",
+        "DE",
+        "D",
+        "A1234567890B",
+        "A1234567890C",
+        long,
+        f"{long}1",
+        f"{long}2",
+    )
     macro = "\n".join(f"<{name.lower()}={place}.5>" for place, name in enumerate(names, 1))
     for place, name in enumerate(names, 1):
         assert _value(name, macro) == _value(name.title(), macro) == place + 0.5
@@ -207,6 +224,7 @@ def test_ifs_side_by_side_are_not_nested() -> None:
         ("IF(1==1)\nELSE\nELSE\nENDIF", "an ELSE came before"),
         ("IF(1==1)\nELSE\nELSE IF(1==1)\nENDIF", "an ELSE came before"),
         ("IF(1==1)\nELSE A\nENDIF", "ELSE needs a line of its own"),
+        ("IF(1==1)\nA\nENDIF B\nENDIF", "ENDIF needs a line of its own"),
         ("IF(1==1) A\nENDIF", "the condition does not go on with 'A'"),
         ("IF 1==1\nENDIF", "'(' is missing before '1'"),
         ("IF(1==1 2==2)\nENDIF", "')' is missing before '2'"),
@@ -388,7 +406,7 @@ def test_sequence_numbers_step_and_begin_again() -> None:
     assert "".join(written).split() == ["N8A", "N11B", "N14C", "N8D"]
 
 
-@pytest.mark.covers("post.block.empty")
+@pytest.mark.covers("post.block.empty", "post.string.dquote")
 def test_lines_of_blanks_and_of_empty_texts_are_no_blocks() -> None:
     assert blocks_of('\n  \n""\n&X&\n@1@\n\',5\'\n"  "', sequence_place=1) == ["N10  "]
     assert blocks_of(" <V1=2> \t&X&  @1@ <V2=V1>\t\n A <V1=3> \nB \t", sequence_place=1) == [
@@ -517,7 +535,14 @@ def test_only_what_has_a_separator_goes_without_one() -> None:
 
 
 @pytest.mark.covers(
-    "post.op.div", "post.fn.SQRT", "post.fn.LOG", "post.fn.LOG10", "post.fn.ASIN", "post.fn.ACOS"
+    "post.op.div",
+    "post.fn.SQRT",
+    "post.fn.LOG",
+    "post.fn.LOG10",
+    "post.fn.ASIN",
+    "post.fn.ACOS",
+    "post.expr.assign",
+    "post.fn.EXP",
 )
 @pytest.mark.parametrize(
     ("expression", "what"),
