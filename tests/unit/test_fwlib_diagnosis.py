@@ -282,6 +282,7 @@ def test_servo_values_of_a_moving_machine() -> None:
 )  # fmt: skip
 @pytest.mark.covers("fanuc.OPMSG.datano", "fanuc.OPMSG.type", "fanuc.OPMSG.char_num", "fanuc.OPMSG.data")
 @pytest.mark.covers("fanuc.OPMSG")
+@pytest.mark.covers("fanuc.OPMSG", "fanuc.OPMSG.char_num", "fanuc.OPMSG.data", "fanuc.MSG_SIZE")
 def test_the_manuals_program_prints_the_message() -> None:
     control = PowerMate()
     library, handle = at(control)
@@ -298,7 +299,7 @@ def test_the_manuals_program_prints_the_message() -> None:
     control.operator_message(2099, "LUBRICANT LOW")
     seen.append(printed())
     control.control.messages.withdraw(2099)
-    control.operator_message(100, "X" * 255)
+    control.operator_message(100, "X" * 300)
     seen.append(printed())
     assert seen == ["No operator message.", "No operator message.", "2099 LUBRICANT LOW", "0100 " + "X" * 255]
     assert library.cnc_rdopmsg(handle, 0, 262)[1].char_num == 255

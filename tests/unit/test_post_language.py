@@ -123,10 +123,11 @@ def test_arithmetic_has_the_usual_precedence() -> None:
     assert _value("-2.5*-V1 - -V1", "<V1=3.5>") == 12.25
 
 
-@pytest.mark.covers("post.expr.assign", "post.expr.newvar", "post.expr.undefined")
+@pytest.mark.covers("post.op.assign", "post.expr.assign", "post.expr.newvar", "post.expr.undefined")
 def test_an_assignment_gives_a_new_value_made_of_the_old_one() -> None:
     assert _value("V1", "<V1=100+1>\n<V1=-V1*2+W>\n<W=V1-1>\n<V1=V1-W*2>") == 204.0
     assert _value("V2-V1", "<V2=3>\n<V1=V2>\n<V2=0>\n<V3=5>") == -3.0
+    assert _value("V1*3000000", "<V1=1/3>\n<V2=V1>\n<V1=V2>") == 1_000_000.0
 
 
 @pytest.mark.covers("post.macro.line_is_block")
