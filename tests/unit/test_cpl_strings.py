@@ -211,6 +211,8 @@ def test_trim() -> None:
     assert results(*lines, '#A$=" UVWXYZ "')["#B$"] == "UVWXYZ"
     assert results('#A$=TRIM$("   ")', "#B$=TRIM$(C$)") == {"#A$": "", "#B$": None}
     assert failure('#A$=TRIM$("A","X")') == "INVALID PARAMETER"
+    tabs = results("DIM #A$(9)", '#A$=" "+CHR$(9)+" A"+CHR$(10)+" "', "#B$=TRIM$(#A$)", '#L$=TRIM$(#A$,"L")')
+    assert (tabs["#B$"], tabs["#L$"]) == ("\t A\n", "\t A\n ")  # blanks only
 
 
 @pytest.mark.covers("cpl.ex.3829")

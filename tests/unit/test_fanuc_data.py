@@ -399,6 +399,7 @@ SIZES = {0: 1, 1: 1, 2: 2, 3: 4}
 @covers(
     "cnc_rdparar", "example.cnc_rdparar", "concept.param_record_stream", "concept.axis_param_rule", "enum.prm_attr.0",
     "enum.prm_attr.1", "enum.prm_attr.2", "enum.prm_attr.3", "concept.sparse_parameters", "concept.range_growth",
+    "struct.IODBPSD", "IODBPSD.type",
 )  # fmt: skip
 def test_a_range_of_parameters_is_a_sequence_of_records() -> None:
     control, handle = attached(axes=3)
@@ -568,7 +569,7 @@ BITS: dict[str, tuple[int, int, Iterable[int], Iterable[int]]] = {
     # name: shift, mask, numbers that have it, numbers that have not
     "bit2": (2, 1, (1320, 1020, 1006), (6711, 3201)),
     "bit3": (3, 1, (), (6711, 6710, 1320)),
-    "bit4": (4, 1, (0, 6711, 6750), (1320, 6710)),
+    "bit4": (4, 1, (0, 12, 6711, 6750), (1320, 6710)),
     "bit5": (5, 1, (1010,), (1020, 6711)),
     "bit6": (6, 1, (1006, 1001, 1004), (1320, 6711)),
     "bit7": (7, 1, (3210,), (3211, 6711)),

@@ -47,6 +47,7 @@ LISTS = {
     ],
 )
 @covers("example.cnc_rdprogdir_format", "cnc_rdprogdir", "concept.truncation")
+@covers("struct.PRGDIR", "PRGDIR.prg_data")
 def test_example_directory(kind: int) -> None:
     _, handle = _directory()
     text = LISTS[kind]

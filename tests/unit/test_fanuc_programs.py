@@ -43,6 +43,7 @@ def test_example_download_cut_anywhere(cut: tuple[int, ...]) -> None:
     assert control.programs.read(1234) == b"O1234\nG1F0.3W10.\nM30\n"
 
 
+@covers("PERCENT", "LF", "cnc_download", "cnc_dwnend", "format.download")
 def test_what_stands_before_the_first_line_feed_and_behind_the_percent_is_ignored() -> None:
     control, handle = attached()
     assert sent(handle, "%jun", "k~\r(\nO7(PLATE", " 2)\nM30\n%", "\nO8\n~~~") == (OK, OK)

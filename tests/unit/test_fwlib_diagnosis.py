@@ -282,6 +282,7 @@ def test_servo_values_of_a_moving_machine() -> None:
 )  # fmt: skip
 @pytest.mark.covers("fanuc.OPMSG.datano", "fanuc.OPMSG.type", "fanuc.OPMSG.char_num", "fanuc.OPMSG.data")
 @pytest.mark.covers("fanuc.OPMSG")
+@pytest.mark.covers("fanuc.OPMSG", "fanuc.OPMSG.char_num", "fanuc.OPMSG.data", "fanuc.MSG_SIZE")
 def test_the_manuals_program_prints_the_message() -> None:
     control = PowerMate()
     library, handle = at(control)

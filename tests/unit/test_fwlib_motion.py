@@ -260,7 +260,10 @@ def test_a_command_past_a_limit_names_it(axis: int, distance: int, alarm: tuple[
     assert [(each.number, each.text) for each in control.status().alarms] == [alarm]
 
 
-@pytest.mark.covers("fanuc.cnc_incpoint", "fanuc.cnc_incpoint.err.EW_BUSY")
+@pytest.mark.covers(
+    *(f"fanuc.cnc_{name}.err.EW_BUSY" for name in ("incpoint", "abspoint", "refpoint", "dwell", "coordre")),
+    *(f"fanuc.cnc_{name}" for name in ("incpoint", "abspoint", "refpoint", "dwell", "coordre")),
+)
 def test_a_running_program_has_the_axes() -> None:
     control = PowerMate()
     library, handle = at(control)
@@ -268,7 +271,14 @@ def test_a_running_program_has_the_axes() -> None:
     control.select_program(4)
     control.cycle_start()
     control.advance(10)
-    assert library.cnc_incpoint(handle, 1, 0, 1, 600, idb((1, 500)))[0] is EW.EW_BUSY
+    calls: list[Callable[[], Any]] = [
+        lambda: library.cnc_dwell(handle, 1, 0, 1, idb((1, 5))),
+        lambda: library.cnc_incpoint(handle, 2, 0, 1, 600, idb((2, 500))),
+        lambda: library.cnc_abspoint(handle, 3, 0, 1, 600, idb((1, 5))),
+        lambda: library.cnc_coordre(handle, 1, 0, 1, idb((1, 5))),
+        lambda: library.cnc_refpoint(handle, 1, 0, 3),
+    ]
+    assert [call()[0] for call in calls] == [EW.EW_BUSY] * 5
     control.advance(5000)
     assert library.cnc_incpoint(handle, 1, 0, 1, 600, idb((1, 500)))[0] is EW.EW_OK
     control.advance(1000)

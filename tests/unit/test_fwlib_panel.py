@@ -193,6 +193,7 @@ def test_feed_override(value: int, percent: int) -> None:
     control.cycle_start()
     control.advance(300)
     assert control.status().axes["Y"].velocity * 60.0 == pytest.approx(450.0 * percent / 100.0, abs=1e-6)
+    assert control.pmc.read("F", 78, 78) == bytes([255 - percent])
 
 
 PROGRAM = b"O0004\nG1 X2. F600\n/Y3.\nZ4.\n"

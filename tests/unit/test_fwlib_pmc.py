@@ -81,8 +81,16 @@ AREAS = [
 @pytest.mark.parametrize(
     ("letter", "first", "last"),
     [
-        pytest.param(*each, marks=pytest.mark.covers(f"fanuc.pmc.area.{each[0]}.{each[1]:04d}_{each[2]:04d}"))
-        for each in AREAS
+        pytest.param(
+            letter,
+            first,
+            last,
+            marks=pytest.mark.covers(
+                f"fanuc.pmc.area.{letter}.{first:04d}_{last:04d}",
+                f"fanuc.pmc.adr_type.{'GFYXARTKCD'.index(letter)}",
+            ),
+        )
+        for letter, first, last in AREAS
     ],
 )
 @pytest.mark.covers("fanuc.pmc_rdpmcrng", "fanuc.pmc_rdpmcrng.err.EW_NUMBER")
@@ -92,6 +100,9 @@ def test_an_area_ends_where_the_manual_says(letter: str, first: int, last: int) 
     assert len(read(library, handle, kind, first, last)) == last - first + 1
     assert library.pmc_rdpmcrng(handle, kind, 0, last, last + 1, 10)[0] is EW.EW_NUMBER
     assert library.pmc_rdpmcrng(handle, kind, 0, first - 1, first, 10)[0] is EW.EW_NUMBER
+    protected = letter in "FX" or first == 9000
+    assert write(library, handle, kind, first, 1) is (EW.EW_PROT if protected else EW.EW_OK)
+    assert write(library, handle, kind, last, 1) is (EW.EW_PROT if protected or letter == "K" else EW.EW_OK)
 
 
 @pytest.mark.parametrize(

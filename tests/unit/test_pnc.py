@@ -103,6 +103,7 @@ def test_g92_shifts_are_read_in_the_own_channel_only(example: Example) -> None:
     assert example.refuses("AXO(1,TRUE)") == ""
 
 
+@pytest.mark.covers("cpl.err.RUNTIME_AXIS")
 @pytest.mark.covers("cpl.ex.1420", "cpl.CPOS", "cpl.axis.logical", "cpl.axis.physical", "cpl.axis.example")
 def test_programmed_positions_of_channel_2(example: Example) -> None:
     found = example.run(
@@ -115,7 +116,7 @@ def test_programmed_positions_of_channel_2(example: Example) -> None:
     assert example.refuses('CPOS("X")', 2) == "1970"
 
 
-@pytest.mark.covers("cpl.ex.1493", "cpl.WPOS", "cpl.posfn.types")
+@pytest.mark.covers("cpl.ex.1493", "cpl.WPOS", "cpl.posfn.types", "cpl.err.RUNTIME_AXIS")
 def test_workpiece_positions_of_other_channels(example: Example) -> None:
     example.run("N1 G168 Z2=1.5\nN2 G0 Z2=8 Y2=-3", channel=2)
     example.run("N1 G92 Y4\nN2 G0 X11 Y7")

@@ -351,6 +351,20 @@ def test_axes_have_the_mode_of_their_channel(two: Living) -> None:
     assert [two.read(48, 1, 2), two.read(48, 2, 2)] == [[5, 5], [4, 4]]
 
 
+@pytest.mark.covers("cpl.MMC", "cpl.MMC.ret.0")
+def test_each_call_sends_what_its_variables_are_then(two: Living) -> None:
+    sent: list[object] = []
+
+    def client(variables: Sequence[Sent]) -> bool:
+        sent.append(variables[0].value)
+        variables[0].value = 10 * len(sent)
+        return True
+
+    two.pnc.system.clients.client = client
+    found = run(two, "10 A%=3 : #I%=MMC(A%)\n20 #A%=A% : A%=A%+4 : #J%=MMC(A%)\n30 #B%=A%\n", 50)
+    assert (sent, [found[name] for name in ("#I%", "#A%", "#J%", "#B%")]) == ([3, 14], [0, 10, 0, 20])
+
+
 @pytest.mark.covers("cpl.MMC.ret.2", "cpl.MMC")
 def test_an_error_in_the_client_changes_nothing(two: Living) -> None:
     def client(variables: Sequence[Sent]) -> bool:

@@ -561,6 +561,7 @@ def measuring(cell: Cell) -> Cell:
     return cell
 
 
+@pytest.mark.covers("cpl.cs.WCS")
 @pytest.mark.covers("cpl.ex.1451", "cpl.CPROBE", "cpl.param.1003_00012", "cpl.SD.9", "cpl.PROBE", "cpl.PPOS")
 @pytest.mark.covers("cpl.SD")
 def test_a_coordinate_is_measured(measuring: Cell) -> None:
@@ -571,6 +572,9 @@ def test_a_coordinate_is_measured(measuring: Cell) -> None:
     )
     found = measuring.values(blocks, "ZMEAS", "SD(9)", "CPROBE(1)", "PROBE(1)", "PPOS(1)", 'PROBE("Z")')
     assert found == pytest.approx([-12.345, 0, 20, 30, 20, -12.345], abs=1e-5)
+    added = blocks.replace("N6", "N6 G268 X1.5\nN7")
+    found = measuring.values(added, "ZMEAS", "SD(9)", "CPROBE(1)", "PROBE(1)", "PPOS(1)", 'PROBE("Z")')
+    assert found == pytest.approx([-12.345, 0, 20, 31.5, 20, -12.345], abs=1e-5)
     assert not any("deflected" in message.text for message in measuring.last.messages)
 
 

@@ -118,6 +118,7 @@ def test_without_an_entry_a_code_is_its_key() -> None:
     assert _rapid(text) == ["G00M05X1.50\n"]
 
 
+@pytest.mark.covers("post.file.output_control_file")
 @pytest.mark.parametrize("encoding", ["utf-8", "utf-8-sig", "cp932"])
 @pytest.mark.parametrize("line_end", ["\n", "\r\n"])
 def test_files_in_utf_8_and_shift_jis(tmp_path: Path, encoding: str, line_end: str) -> None:

@@ -32,6 +32,7 @@ def _error(macro: str) -> ConfigurationError:
 
 
 FUNCTIONS = [
+    ("DABS(-0.123456789)", 0.123456789),
     ("SIN(0.5)", 0.479425539),
     ("COS(0.5)", 0.877582562),
     ("TAN(0.5)", 0.546302490),
@@ -54,6 +55,9 @@ FUNCTIONS = [
     ("COS(4.75)", 0.03760215288798),
     ("TAN(-0.5)", -0.5463024898438),
     ("TAN(2)", -2.185039863262),
+    ("SIN(-40)", -0.7451131604793),
+    ("COS(40)", -0.6669380616523),
+    ("TAN(40)", -1.1172149309239),
     ("ASIN(-0.75)", -0.8480620789815),
     ("ACOS(-0.75)", 2.418858405776),
     ("ATAN(-3)", -1.249045772398),
@@ -123,15 +127,34 @@ def test_arithmetic_has_the_usual_precedence() -> None:
     assert _value("-2.5*-V1 - -V1", "<V1=3.5>") == 12.25
 
 
-@pytest.mark.covers("post.expr.assign", "post.expr.newvar", "post.expr.undefined")
+@pytest.mark.covers("post.op.assign", "post.expr.assign", "post.expr.newvar", "post.expr.undefined")
 def test_an_assignment_gives_a_new_value_made_of_the_old_one() -> None:
     assert _value("V1", "<V1=100+1>\n<V1=-V1*2+W>\n<W=V1-1>\n<V1=V1-W*2>") == 204.0
     assert _value("V2-V1", "<V2=3>\n<V1=V2>\n<V2=0>\n<V3=5>") == -3.0
+    assert _value("V1*3000000", "<V1=1/3>\n<V2=V1>\n<V1=V2>") == 1_000_000.0
+
+
+@pytest.mark.covers("post.macro.line_is_block")
+def test_only_a_line_feed_ends_a_line() -> None:
+    assert blocks_of("A\u2028B\x85C\u2029\nD") == ["A\u2028B\x85C\u2029", "D"]
+    assert blocks_of(" A \n\n B \t") == [" A ", " B \t"]
 
 
 @pytest.mark.covers("post.op.assign", "post.expr.newvar", "post.expr.case")
 def test_names_of_any_length_are_told_apart_but_not_by_their_case() -> None:
-    names = ("DEPTH", "DEPTH1", "DEPTH_1", "DE", "D", "A1234567890B", "A1234567890C")
+    long = "A" + "1234567890_B" * 6
+    names = (
+        "DEPTH",
+        "DEPTH1",
+        "DEPTH_1",
+        "DE",
+        "D",
+        "A1234567890B",
+        "A1234567890C",
+        long,
+        f"{long}1",
+        f"{long}2",
+    )
     macro = "\n".join(f"<{name.lower()}={place}.5>" for place, name in enumerate(names, 1))
     for place, name in enumerate(names, 1):
         assert _value(name, macro) == _value(name.title(), macro) == place + 0.5
@@ -207,6 +230,7 @@ def test_ifs_side_by_side_are_not_nested() -> None:
         ("IF(1==1)\nELSE\nELSE\nENDIF", "an ELSE came before"),
         ("IF(1==1)\nELSE\nELSE IF(1==1)\nENDIF", "an ELSE came before"),
         ("IF(1==1)\nELSE A\nENDIF", "ELSE needs a line of its own"),
+        ("IF(1==1)\nA\nENDIF B\nENDIF", "ENDIF needs a line of its own"),
         ("IF(1==1) A\nENDIF", "the condition does not go on with 'A'"),
         ("IF 1==1\nENDIF", "'(' is missing before '1'"),
         ("IF(1==1 2==2)\nENDIF", "')' is missing before '2'"),
@@ -353,6 +377,8 @@ def test_reserved_words_expand_to_texts_and_numbers() -> None:
     assert blocks_of("$TOOLCHANGE$", words={"T": 7}) == ["T07"]  # a system that gives no text
     assert blocks_of("$TOOLCHANGE$", words={"T": 7, "TOOLCHANGE": "T7"}) == ["T7"]
     assert blocks_of("$OUTPUTORDER$<OUTPUTORDER=1>") == ["0"]
+    for dwell, text in ((1.234567, "1.234567"), (-0.000001, "-0.000001"), (98765.4, "98765.4")):
+        assert blocks_of("$DWELL$", words={"DWELL": dwell}) == [text]
 
 
 @pytest.mark.parametrize("word", ["V1", "H", "G90", "1X"])
@@ -388,7 +414,7 @@ def test_sequence_numbers_step_and_begin_again() -> None:
     assert "".join(written).split() == ["N8A", "N11B", "N14C", "N8D"]
 
 
-@pytest.mark.covers("post.block.empty")
+@pytest.mark.covers("post.block.empty", "post.string.dquote")
 def test_lines_of_blanks_and_of_empty_texts_are_no_blocks() -> None:
     assert blocks_of('\n  \n""\n&X&\n@1@\n\',5\'\n"  "', sequence_place=1) == ["N10  "]
     assert blocks_of(" <V1=2> \t&X&  @1@ <V2=V1>\t\n A <V1=3> \nB \t", sequence_place=1) == [
@@ -517,7 +543,14 @@ def test_only_what_has_a_separator_goes_without_one() -> None:
 
 
 @pytest.mark.covers(
-    "post.op.div", "post.fn.SQRT", "post.fn.LOG", "post.fn.LOG10", "post.fn.ASIN", "post.fn.ACOS"
+    "post.op.div",
+    "post.fn.SQRT",
+    "post.fn.LOG",
+    "post.fn.LOG10",
+    "post.fn.ASIN",
+    "post.fn.ACOS",
+    "post.expr.assign",
+    "post.fn.EXP",
 )
 @pytest.mark.parametrize(
     ("expression", "what"),
