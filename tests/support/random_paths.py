@@ -57,6 +57,7 @@ class PathSettings:
     depth: int = 0
     jerk: float = 0.0
     shares: tuple[float, float, float] | None = None  # of corners, arcs in them and last lines, see BY_SHARE
+    free: bool = False  # overlaps leave tolerance and feed
 
 
 def machine(rng: np.random.Generator, settings: PathSettings, segments: int = 4096) -> KernelState:
@@ -70,6 +71,7 @@ def machine(rng: np.random.Generator, settings: PathSettings, segments: int = 40
     if settings.shares is not None:
         row["corner_rule"], row["corner_cycle_s"] = BY_SHARE, CYCLE_S
         row["corner_share"], row["rounding_share"], row["last_share"] = settings.shares
+        row["free_overlaps"] = settings.free
     give_to_path(state, 0)
     return state
 
