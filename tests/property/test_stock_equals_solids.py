@@ -90,6 +90,23 @@ def test_volumes_of_random_programs(number: int) -> None:
     assert compare(number) < 1.5e-3
 
 
+@pytest.mark.parametrize("angle_deg", [30.0, 60.0, 90.0])
+def test_a_groove_along_the_grid_is_right_within_the_bound_of_its_cells(angle_deg: float) -> None:
+    """A cell is half as wide as the groove n times: the volume is off by at most 1 / (2 n) squared."""
+    slope, length, cell = math.tan(math.radians(0.5 * angle_deg)), 20.0, 0.1
+    for number in range(12):
+        rng = np.random.default_rng(number)
+        deep, y = float(rng.uniform(0.4, 2.0)), float(rng.uniform(4.0, 4.3))
+        stock = Stock(Box((0.0, 0.0, -4.0), (length, 8.0, 0.0)), cell)
+        cutting = Cutting(stock, {4: Tool(ToolKind.CHAMFER, 9.0, angle_deg=angle_deg)})
+        places = np.array([(-9.0, y, -deep), (length + 9.0, y, -deep)])
+        two = np.arange(2)
+        cutting.add(Rows(two + 1.0, places, two, np.full(2, 4), np.zeros(2, np.bool_), np.ones(2)))
+        half_width = deep * slope
+        off = cutting.removed_mm3 / (deep * half_width * length) - 1.0
+        assert abs(off) <= (0.5 * cell / half_width) ** 2 + 1e-4
+
+
 # A plane, the block that cuts in it from X20 Y15 Z-3, and where that leads after a share of its way.
 ARCS: dict[str, Callable[[float], tuple[float, float, float]]] = {
     "G17 G3 X20 Y15 Z-6.3 I7 J0": lambda u: (

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -9,7 +11,7 @@ import polycnc
 from polycnc.runner import view_program
 from polycnc.runner.view import _film, _watched
 from polycnc.runner.view._film import Film, film_of
-from polycnc.stock import Cutting, Form, Stock, Tool, Turned, TurnedCutting, TurningCutting, Voxels
+from polycnc.stock import Cutting, Stock, Tool, Turned, TurnedCutting, TurningCutting, Voxels
 
 PLATE = """(T1 D=10. CR=0. - flat end mill)
 (T3 D=6. CR=3. - ball end mill)
@@ -144,17 +146,13 @@ def test_a_body_that_turns_has_shares_of_its_cells(monkeypatch: pytest.MonkeyPat
     assert film.kind == "solid"
     assert film.cell_mm == pytest.approx(32.0 / 12.0, rel=0.1)
     for until_s in (film.ends[len(film.ends) // 2], np.inf):
-        solid = _again(machined.form.text, film.cell_mm / 2.0)
+        solid = replace(machined.form, cell_mm=film.cell_mm / 2.0).voxels(machined.course, machined.rotating)
         cutting = TurnedCutting(solid, {1: machined.rotating[1]})
         cutting.add(machined.course.at(np.flatnonzero(machined.course.t_s <= until_s)))
         shares, (nz, ny, nx) = _field(film, until_s), solid.cells.shape
         shown = np.repeat(np.repeat(np.repeat(shares, 2, 0), 2, 1), 2, 2)[:nz, :ny, :nx].sum()
         assert 0.0 < shown == pytest.approx(float(solid.cells.sum()) / Voxels.FULL, abs=8.0)  # of the chords
     assert shown < film.begin.size * 8
-
-
-def _again(text: str, cell_mm: float) -> Voxels:
-    return Form(text, cell_mm).voxels()
 
 
 def test_a_page_of_a_small_part_stays_small() -> None:

@@ -168,7 +168,7 @@ class MachiningCollector:
         if self._turned or undercuts:
             if not self._turned:
                 form = form.told(course, mills)
-            solid = TurnedCutting(form.voxels(), mills)
+            solid = TurnedCutting(form.voxels(course, mills), mills)
             solid.add(course)
             return self._what_was_cut(solid.stock, solid.tally, form, course, given)
         stock = form.body(course, mills)

@@ -14,6 +14,9 @@ from polycnc.stock._cutting import Cutting
 from polycnc.stock._rows import Rows
 from polycnc.stock._stock import Box, Stock
 from polycnc.stock._tool import Tool
+from polycnc.stock._turned_cutting import TurnedCutting
+from polycnc.stock._voxels import Voxels
+from polycnc.stock._ways import runs
 
 Floats = npt.NDArray[np.float64]
 Flags = npt.NDArray[np.bool_]
@@ -27,7 +30,7 @@ _ALONG_DIAMETERS = 1.0
 
 
 class NoStockError(UsageError):
-    """A program that leaves nothing to say about stock: it cuts nothing, or in a way that is not simulated."""
+    """A program that leaves nothing to say about stock: it cuts nothing."""
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -179,6 +182,42 @@ def _met_at_rapid(course: Rows, tools: Mapping[int, Tool], sides: _Sides) -> lis
     cutting = Cutting(stock, tools)
     cutting.add(course)
     return [each.block for each in cutting.contacts if each.kind is ContactKind.RAPID]
+
+
+def around_any_side(course: Rows, tools: Mapping[int, Tool]) -> Box:
+    """Return the box that holds what tools cut from any side, with a margin.
+
+    Raises:
+        NoStockError: nothing is cut.
+    """
+    _Moves.of(course, tools, "Give one, like box=0,0,-10,90,60,0.")  # refuses what cuts nothing
+    number = np.flatnonzero(~course.rapid[1:] & np.any(course.tip[1:] != course.tip[:-1], axis=1)) + 1
+    radius = np.array(
+        [tools[each].radius_mm if each in tools else 0.0 for each in course.tool[number].tolist()]
+    )
+    axis = np.broadcast_to(course.axis, course.tip.shape)[number]
+    reach = radius[:, None] * np.sqrt(np.maximum(1.0 - axis**2, 0.0))
+    low = (course.tip[number] - reach).min(axis=0) - MARGIN_MM
+    high = (course.tip[number] + reach).max(axis=0) + MARGIN_MM
+    upright = bool(np.all(axis[:, 2] > 1.0 - 1e-9))
+    top = around(course, tools).high[2] if upright else float(high[2]) - MARGIN_MM
+    (x0, y0, z0), (x1, y1, _) = low.tolist(), high.tolist()
+    return Box((x0, y0, z0), (x1, y1, top))
+
+
+def leave_out_rapids(body: Voxels, course: Rows, tools: Mapping[int, Tool]) -> None:
+    """Take from a body what tools go through at rapid before they have cut it: an `auto` body has nothing there."""
+    trial = body.copy()
+    cutting = TurnedCutting(trial, tools)
+    for first, last in runs(course.rapid.astype(np.int64)):
+        rows = course.at(np.arange(first, last))
+        if not course.rapid[first]:
+            cutting.add(rows)
+            continue
+        before, removed = trial.cells.copy(), sum(cutting.tally.by_tool_mm3.values())
+        cutting.add(rows)
+        if sum(cutting.tally.by_tool_mm3.values()) > removed:
+            body.cells -= np.minimum(before - trial.cells, body.cells)
 
 
 def around_turned(course: Rows) -> tuple[float, float, float]:

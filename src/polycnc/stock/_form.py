@@ -9,9 +9,9 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from polycnc.errors import UsageError
-from polycnc.stock._auto import NoStockError, around, around_turned
+from polycnc.stock._auto import around, around_any_side, around_turned, leave_out_rapids
 from polycnc.stock._rows import Rows
-from polycnc.stock._solid import solid_stock
+from polycnc.stock._solid import solid_stock, solid_voxels
 from polycnc.stock._stock import Box, Stock, check_cell
 from polycnc.stock._target import TOLERANCE_MM, Target, check_tolerance
 from polycnc.stock._tool import Tool
@@ -98,8 +98,8 @@ class Form:
         box = around(course, tools)
         return replace(self, text="box=" + ",".join(f"{each:.9g}" for each in (*box.low, *box.high)))
 
-    def voxels(self) -> Voxels:
-        """Return the body for tools that come from any side.
+    def voxels(self, course: Rows, tools: Mapping[int, Tool]) -> Voxels:
+        """Return the body for tools that come from any side; of an `auto` one nothing is where rapids go.
 
         Raises:
             UsageError: a body that is not one of these.
@@ -117,10 +117,14 @@ class Form:
             diameter, low, high = numbers_of(self.text, numbers, 3)
             cell_mm = self.cell_mm or _cell_mm(_FINER_TURNED * max(diameter, high - low))
             return Voxels.cylinder(diameter, low, high, cell_mm)
-        raise NoStockError(
-            f"'{self.text}' where an axis turns, or a tool undercuts",
-            hint="Write box=X0,Y0,Z0,X1,Y1,Z1 or cylinder=D,Z0,Z1.",
-        )
+        if self.text != "auto":
+            name, turned = _file_of(self.text)
+            return solid_voxels(Path(name), self.cell_mm, lambda size: _cell_mm(_FINER_TURNED * size), turned)
+        box = around_any_side(course, tools)
+        size = max(b - a for a, b in zip(box.low, box.high, strict=True))
+        found = Voxels(box, self.cell_mm or _cell_mm(_FINER_TURNED * size))
+        leave_out_rapids(found, course, tools)
+        return found
 
     def target_of(self, stock: Stock) -> Target | None:
         """Return what is to come out of a body; None if that is not said.

@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from polycnc.outputs import complete_or_absent
-from polycnc.stock._mesh_files import stl, write_mesh
+from polycnc.stock._mesh_files import write_mesh, write_stl
 from polycnc.stock._sweep import Grid
 
 
@@ -37,7 +37,7 @@ class Mesh:
     def write_stl(self, path: str | Path) -> None:
         """Write a binary STL file, whole or not at all."""
         with complete_or_absent(Path(path)) as partial:
-            partial.write_bytes(stl(self.vertices, self.faces))
+            write_stl(self.vertices, self.faces, partial)
 
 
 def mesh(grid: Grid) -> Mesh:
@@ -56,16 +56,16 @@ def mesh(grid: Grid) -> Mesh:
     top = np.column_stack((columns.ravel(), rows.ravel(), z.ravel()))
     below = top.copy()
     below[:, 2] = grid.bottom
-    at = np.arange(count).reshape(ny, nx)
+    at = np.arange(count, dtype=np.int32).reshape(ny, nx)
     a, b, c, d = at[:-1, :-1].ravel(), at[:-1, 1:].ravel(), at[1:, 1:].ravel(), at[1:, :-1].ravel()
+    is_solid = top[:, 2] > grid.bottom
     upper = np.concatenate((np.column_stack((a, b, c)), np.column_stack((a, c, d))))
-    solid = (top[upper, 2] > grid.bottom).any(axis=1)
-    upper = upper[solid]
-    lower = upper[:, ::-1] + count
-    faces = np.concatenate((upper, lower))
+    upper = upper[is_solid[upper].any(axis=1)]
     # Where the top lies on the bottom both share their corner, so that the surface is closed.
-    same = np.arange(count)
-    faces = np.concatenate((same, np.where(top[:, 2] > grid.bottom, same + count, same)))[faces]
-    used, compact = np.unique(faces, return_inverse=True)
-    vertices = np.concatenate((top, below))[used]
-    return Mesh(vertices, compact.reshape(faces.shape).astype(np.int64))
+    used = np.zeros(2 * count, np.bool_)
+    used[upper] = True
+    used[count:] = used[:count] & is_solid
+    compact = np.cumsum(used, dtype=np.int32) - 1
+    under = np.where(is_solid, compact[count:], compact[:count])
+    faces = np.concatenate((compact[upper], under[upper[:, ::-1]]), dtype=np.int64)
+    return Mesh(np.concatenate((top[used[:count]], below[used[count:]])), faces)

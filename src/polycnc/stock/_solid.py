@@ -13,11 +13,16 @@ from polycnc.errors import UsageError
 from polycnc.kernel import entry
 from polycnc.stock._mesh import Mesh
 from polycnc.stock._stock import FARTHEST_MM, Box, Stock
+from polycnc.stock._voxel_sweep import FULL
+from polycnc.stock._voxels import Voxels
 
 MOST_TRIANGLES = 5_000_000
 MOST_TEXT_BYTES = 200_000_000
 _ROW = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
 _HEADER = 84
+_RAYS = 3  # through a cell, along x as along y
+_ASIDE = 1.234567e-4
+_MOST_SHARES = 8_000_000
 _VERTEX = re.compile(rb"\bvertex\s+(\S+)\s+(\S+)\s+(\S+)", re.IGNORECASE)
 
 
@@ -119,20 +124,98 @@ def solid_stock(
     Raises:
         UsageError: no such file, no closed surface, or too many cells.
     """
+    surface, box = _placed(path, turned)
+    stock = Stock(
+        box,
+        cell_mm or default_mm(max(b - a for a, b in zip(box.low[:2], box.high, strict=False))),
+    )
+    stock.heights[...] = stock.grid.bottom
+    grid = stock.grid
+    draw(np.ascontiguousarray(surface.vertices[surface.faces]), grid.x0, grid.y0, grid.cell_mm, grid.z)
+    return stock
+
+
+def solid_voxels(
+    path: Path, cell_mm: float | None, default_mm: Callable[[float], float], turned: str = ""
+) -> Voxels:
+    """Return the body in an STL file for tools that come from any side, with what is hollow in it.
+
+    Raises:
+        UsageError: no such file, no closed surface, or too many cells.
+    """
+    surface, box = _placed(path, turned)
+    size = max(b - a for a, b in zip(box.low, box.high, strict=True))
+    found = Voxels(box, cell_mm or default_mm(size))
+    found.name = f"'{path.name}'"
+    triangles = np.ascontiguousarray(surface.vertices[surface.faces])
+    height, _, width = found.cells.shape
+    strip = max(1, _MOST_SHARES // (height * width))
+    for first in range(0, found.cells.shape[1], strip):
+        cells = found.cells[:, first : first + strip]
+        shares = np.zeros(cells.shape, np.float32)
+        fill(triangles, found.first + (0.0, first * found.cell_mm, 0.0), found.cell_mm, shares)
+        shares = np.cumsum(shares[::-1], axis=0)[::-1]
+        cells[...] = np.rint(np.clip(shares / _RAYS**2, 0.0, 1.0) * FULL)
+    return found
+
+
+def _placed(path: Path, turned: str) -> tuple[Mesh, Box]:
+    """Return the closed surface in a file, turned over if that is said, and the box around it."""
     surface = read_stl(path)
     check_closed(path, surface)
     low, high = surface.vertices.min(axis=0), surface.vertices.max(axis=0)
     if turned:
         across = [1, 2] if turned == "x" else [0, 2]
         surface.vertices[:, across] = (low + high - surface.vertices)[:, across]
-    stock = Stock(
-        Box((float(low[0]), float(low[1]), float(low[2])), (float(high[0]), float(high[1]), float(high[2]))),
-        cell_mm or default_mm(float(max(high[:2] - low[:2]))),
+    (x0, y0, z0), (x1, y1, z1) = low.tolist(), high.tolist()
+    return surface, Box((x0, y0, z0), (x1, y1, z1))
+
+
+@entry(steps=lambda triangles, *_: 50 * len(triangles))
+def fill(
+    triangles: npt.NDArray[np.float64],
+    first: npt.NDArray[np.float64],
+    cell_mm: float,
+    shares: npt.NDArray[np.float32],
+) -> None:
+    """Add up where upright rays, some through each cell, leave and enter a closed surface [n, 3, 3].
+
+    `shares` [nz, ny, nx] summed from the top down are how many rays of a cell are inside, in part at its ends.
+    """
+    nz, ny, nx = shares.shape
+    step = cell_mm / _RAYS
+    # Beside the middle by a little: rays through edges would count twice.
+    x0, y0 = (
+        first[0] - 0.5 * (cell_mm - step) + _ASIDE * step,
+        first[1] - 0.5 * (cell_mm - step) - _ASIDE * step,
     )
-    stock.heights[...] = stock.grid.bottom
-    grid = stock.grid
-    draw(np.ascontiguousarray(surface.vertices[surface.faces]), grid.x0, grid.y0, grid.cell_mm, grid.z)
-    return stock
+    for n in range(triangles.shape[0]):
+        ax, ay, az = triangles[n, 0, 0], triangles[n, 0, 1], triangles[n, 0, 2]
+        bx, by, bz = triangles[n, 1, 0], triangles[n, 1, 1], triangles[n, 1, 2]
+        cx, cy, cz = triangles[n, 2, 0], triangles[n, 2, 1], triangles[n, 2, 2]
+        area = (bx - ax) * (cy - ay) - (cx - ax) * (by - ay)
+        if area == 0.0:
+            continue
+        first_x = max(0, int(np.ceil((min(ax, bx, cx) - x0) / step)))
+        last_x = min(nx * _RAYS - 1, int(np.floor((max(ax, bx, cx) - x0) / step)))
+        first_y = max(0, int(np.ceil((min(ay, by, cy) - y0) / step)))
+        last_y = min(ny * _RAYS - 1, int(np.floor((max(ay, by, cy) - y0) / step)))
+        for iy in range(first_y, last_y + 1):
+            y = y0 + iy * step
+            for ix in range(first_x, last_x + 1):
+                x = x0 + ix * step
+                u = ((bx - x) * (cy - y) - (cx - x) * (by - y)) / area
+                v = ((cx - x) * (ay - y) - (ax - x) * (cy - y)) / area
+                w = 1.0 - u - v
+                if u < 0.0 or v < 0.0 or w < 0.0:
+                    continue
+                up = (u * az + v * bz + w * cz - first[2]) / cell_mm + 0.5
+                iz = min(nz - 1, max(0, int(np.floor(up))))
+                part = min(1.0, max(0.0, up - iz))
+                sign = 1.0 if area > 0.0 else -1.0
+                shares[iz, iy // _RAYS, ix // _RAYS] += sign * part
+                if iz > 0:
+                    shares[iz - 1, iy // _RAYS, ix // _RAYS] += sign * (1.0 - part)
 
 
 @entry(steps=lambda triangles, *_: 50 * len(triangles))

@@ -29,7 +29,8 @@ _ANGLE = re.compile(
 )
 _UNLIKE = re.compile(
     r"\bprob(?:e|ing)\b|thread[ -]?mill|\bt[ -]slot|dove[ -]?tail|lollipop|undercut|woodruff|key(?:seat|way|slot)"
-    r"|\b(?:bolts?|circle)\b.*\bdia|\bradius mill|corner round|\bround[ -]?over|\bform (?:mill|tool|cutter)|\bogee\b|\bcove\b",
+    r"|\b(?:bolts?|circle)\b.*\bdia"
+    r"|\bradius mill|corner round|\bround[ -]?over|\bform (?:mill|tool|cutter)|\bogee\b|\bcove\b",
     re.IGNORECASE,
 )
 _TEETH = re.compile(r"(?<![\d.])(\d{1,2})[ -]?(?:flutes?|fl|teeth|tooth)\b(?! *len)", re.IGNORECASE)

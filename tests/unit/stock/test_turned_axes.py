@@ -16,6 +16,7 @@ from polycnc.stock import (
     Box,
     ContactKind,
     Form,
+    Mesh,
     Rows,
     Tool,
     ToolKind,
@@ -50,6 +51,9 @@ def record(
         np.full(n, 900.0),
         np.array(axes),
     )
+
+
+NOWHERE = record([(0.0, 0.0, 0.0)], [(0.0, 0.0, 1.0)], [True])
 
 
 def drilled(degrees: float, cell: float, *, rapid: bool = False, tool: Tool = MILL) -> TurnedCutting:
@@ -153,6 +157,50 @@ def test_a_table_that_turns_shows_its_sides_to_the_tool() -> None:
     assert (wrong.collisions[0].kind, wrong.collisions[0].line) == (ContactKind.RAPID, 6)
 
 
+def test_an_auto_body_has_nothing_where_rapids_come_along() -> None:
+    """Both holes are cut whole: what is left out is what a rapid meets before it is cut, not the way out of a hole."""
+    config = load_machine("mill5").model_copy(update={"start": {"Z": 80.0}})
+    near = TABLE.replace("G0 X0 Y0 Z80 A-90 C0\nX0 Y0 Z30", "G0 X0 Y0 Z80 A-90 C0\nX20 Z14\nX0 Z19.5")
+    for text in (TABLE, near):
+        found = runner.run(text, config, "fanuc", stock="auto", resolution_mm=0.5, check=False)
+        assert found.machined is not None
+        assert found.collisions == []
+        lines = {
+            found.machined.blocks[n].line for n in np.flatnonzero(found.machined.removed_mm3 > 50.0).tolist()
+        }
+        assert len(lines) == 2
+        assert found.machined.form.text == "auto"
+
+
+def test_a_body_from_a_file_is_cut_from_any_side(tmp_path: Path) -> None:
+    """Leaning walls, a tunnel and a hollow: cells have the volume of the exact body, upright and turned over."""
+    manifold3d = pytest.importorskip("manifold3d")
+    solid = manifold3d.Manifold
+    body: Any = solid.sphere(12.0, 48) - solid.cube([7.0, 6.0, 5.0], True)
+    body -= (
+        solid.cylinder(40.0, 4.0, circular_segments=32, center=True)
+        .rotate([0.0, 90.0, 0.0])
+        .translate([0.0, 0.0, 6.5])
+    )
+    body += solid.cube([8.0, 5.0, 3.0]).rotate([20.0, 30.0, 10.0]).translate([15.0, 3.0, 2.0])
+    found = body.to_mesh()
+    vertices = np.array(found.vert_properties[:, :3], np.float64)
+    file = tmp_path / "part.stl"
+    Mesh(vertices, np.array(found.tri_verts, np.int64)).write_stl(file)
+    cells = Form(str(file), 0.4).voxels(NOWHERE, {})
+    assert cells.volume_mm3 == pytest.approx(body.volume(), rel=5e-4)
+    assert [cells.holds(0.0, y, z) for y, z in ((0.0, 0.0), (0.0, 6.0), (9.0, 0.0), (0.0, -9.0))] == [
+        False, False, True, True,
+    ]  # fmt: skip
+    over = Form(f"x-turned={file}", 0.4).voxels(NOWHERE, {})
+    assert over.volume_mm3 == pytest.approx(body.volume(), rel=5e-4)
+    middle = vertices.min(axis=0) + vertices.max(axis=0)
+    assert not over.holds(0.0, middle[1], middle[2] - 6.0)
+    cutting = TurnedCutting(cells, {4: MILL})
+    cutting.add(record([(0.0, 0.0, 20.0), (0.0, 0.0, 9.0)], [(0.0, 0.0, 1.0)] * 2, [True, False]))
+    assert cutting.tally.by_tool_mm3[4] > 20.0
+
+
 def test_the_surface_of_cells_is_closed_and_has_their_volume() -> None:
     body = drilled(31.0, 0.5).stock
     surface = body.mesh()
@@ -169,8 +217,12 @@ def test_the_surface_of_cells_is_closed_and_has_their_volume() -> None:
         (lambda: Voxels(Box((0.0, 0.0, 0.0), (1.0, 0.0, 1.0)), 0.1), "no volume"),
         (lambda: Voxels(Box((0.0, 0.0, 0.0), (100.0, 100.0, 100.0)), 0.02), "125,000,000,000 cells"),
         (lambda: Voxels(BOX, float("nan")), "resolution of nan"),
-        (lambda: Form("part.stl").voxels(), "'part.stl' where an axis turns"),
-        (lambda: Form("box=0,0,0,1,1,1", fixtures=("box=0,0,0,1,1,1",)).voxels(), "fixtures and targets"),
+        (lambda: Form("missing.stl").voxels(NOWHERE, {}), "cannot read"),
+        (lambda: Form("auto").voxels(NOWHERE, {}), "cuts nothing"),
+        (
+            lambda: Form("box=0,0,0,1,1,1", fixtures=("box=0,0,0,1,1,1",)).voxels(NOWHERE, {}),
+            "fixtures and targets",
+        ),
     ],
 )
 def test_what_no_body_of_points_has_is_refused(wrong: Any, text: str) -> None:

@@ -60,7 +60,7 @@ def watched(machined: Machined, coarser: int) -> tuple[Watched, Cutting | Turnin
     if isinstance(machined.stock, Voxels):
         whole = machined.stock
         longest = max(high - low for low, high in zip(whole.box.low, whole.box.high, strict=True))
-        solid = replace(form, cell_mm=max(whole.cell_mm, longest / (2 * MOST_THROUGH))).voxels()
+        solid = replace(form, cell_mm=max(whole.cell_mm, longest / (2 * MOST_THROUGH))).voxels(course, tools)
         return _WatchedSolid(solid, 2 * coarser, tools), TurnedCutting(solid, tools)
     stock = form.body(course, tools)
     several = coarser * max(1, -(-max(stock.heights.shape) // MOST_ACROSS))
