@@ -11,6 +11,7 @@ from polycnc.stock._insert import Insert, InsertKind, grooving_tool, iso_insert,
 from polycnc.stock._mesh import Mesh
 from polycnc.stock._mesh_files import MESH_FORMATS
 from polycnc.stock._profile import Arc, Line, Profile, make_profile
+from polycnc.stock._removing import Removing
 from polycnc.stock._rows import Rows
 from polycnc.stock._solid import check_closed, read_stl
 from polycnc.stock._stock import Box, Stock
@@ -42,6 +43,7 @@ __all__ = [
     "Mesh",
     "NoStockError",
     "Profile",
+    "Removing",
     "Rows",
     "Stock",
     "Tally",

@@ -24,7 +24,7 @@ _CORNER_MM = 1e-6
 _STEPS_TO_CORNER = 48
 _BOUNDS = 1024
 _CELLS_A_STEP = 5  # most are left as they are
-_REACH_CELLS = 0.6  # half the length of what is a short way
+_ROUNDING_MM = 1e-9
 
 
 class Grid(NamedTuple):
@@ -71,56 +71,52 @@ def level(rows: Floats, r: float) -> float:
 
 
 @compiled
-def _at(row: Floats, r2: float) -> float:
-    """Return the height of a piece of an outline at the square of a radius; a ball needs no root more."""
-    if row[ARC_R] > 0.0 and row[CENTRE_R] <= 0.0:
-        return float(row[CENTRE_Z] - math.sqrt(max(0.0, row[ARC_R] * row[ARC_R] - r2)))
-    return _outline(row, math.sqrt(r2))
-
-
-@compiled
-def _gradient(row: Floats, q2: float, slope: float, w: float) -> float:
-    """Return how fast `slope * w + outline` of a rounded corner rises with `w`."""
+def _at(row: Floats, q2: float, slope: float, w: float) -> tuple[float, float]:
+    """Return `slope * w + outline` of a piece, and which way that rises with `w`: a number of the sign of its slope."""
+    if row[ARC_R] <= 0.0:
+        if row[SLOPE] == 0.0:
+            return slope * w + row[BEGIN_Z], slope
+        d = math.sqrt(q2 + w * w)
+        return slope * w + _outline(row, d), slope * d + row[SLOPE] * w
+    if row[CENTRE_R] <= 0.0:  # a ball needs one root alone
+        root = math.sqrt(max(0.0, row[ARC_R] * row[ARC_R] - (q2 + w * w)))
+        return slope * w + (row[CENTRE_Z] - root), slope * root + w
     d = math.sqrt(q2 + w * w)
     over = d - row[CENTRE_R]
-    if over <= 0.0:
-        return slope
-    root = math.sqrt(max(1e-12, row[ARC_R] * row[ARC_R] - over * over))
-    return float(slope + over / root * w / d)
+    root = math.sqrt(max(0.0, row[ARC_R] * row[ARC_R] - over * over))
+    return slope * w + (row[CENTRE_Z] - root), slope * root * d + over * w
 
 
 @compiled
 def _on_corner(row: Floats, q2: float, slope: float, low: float, high: float) -> float:
-    """Return where from `low` to `high` a corner is lowest over a cell on a slope, to `_CORNER_MM` in height."""
-    below = _gradient(row, q2, slope, low)
-    if below >= 0.0:
-        return low
-    above = _gradient(row, q2, slope, high)
-    if above <= 0.0:
-        return high
-    w = low
-    for step in range(_STEPS_TO_CORNER):
-        # Along the secant, and halved each other time: that gets there however steep one end is.
-        w = 0.5 * (low + high) if step % 2 else (low * above - high * below) / (above - below)
-        here = _gradient(row, q2, slope, w)
-        if abs(here) * (high - low) < _CORNER_MM:
-            break
-        if here > 0.0:
-            high, above = w, here
+    """Return where from `low` to `high`, between which it is, a corner is lowest, to `_CORNER_MM` in height."""
+    w = min(max(0.0, low), high)
+    for _ in range(_STEPS_TO_CORNER):
+        d = math.sqrt(q2 + w * w)
+        over = d - row[CENTRE_R]
+        root = math.sqrt(max(1e-12, row[ARC_R] * row[ARC_R] - over * over))
+        rise, share = over / root, w / d
+        gradient = slope + rise * share
+        if gradient > 0.0:
+            high = w
         else:
-            low, below = w, here
+            low = w
+        bend = 1e-12 + (1.0 + rise * rise) / root * share * share + rise * (1.0 - share * share) / d
+        step = gradient / bend
+        w = w - step if low < w - step < high else 0.5 * (low + high)
+        if abs(gradient) * min(abs(step), high - low) < _CORNER_MM:
+            break
     return w
 
 
 @compiled
-def _stationary(row: Floats, q2: float, slope: float) -> float:
-    """Return where along the way, from the foot of the cell, a cone or ball is lowest over it, were it not to end."""
+def _stationary(row: Floats, q2: float, slope: float, low: float, high: float) -> float:
+    """Return where along the way, from the foot of the cell, a piece is lowest over it, between `low` and `high`."""
     if row[ARC_R] <= 0.0:
-        steep = row[SLOPE] * row[SLOPE] - slope * slope
-        if steep > 0.0:
-            return -slope * math.sqrt(q2 / steep)
-        return -_FAR if slope > 0.0 else _FAR
-    return -slope * math.sqrt(max(0.0, row[ARC_R] * row[ARC_R] - q2) / (1.0 + slope * slope))
+        return -slope * math.sqrt(q2 / (row[SLOPE] * row[SLOPE] - slope * slope))
+    if row[CENTRE_R] <= 0.0:
+        return -slope * math.sqrt(max(0.0, row[ARC_R] * row[ARC_R] - q2) / (1.0 + slope * slope))
+    return _on_corner(row, q2, slope, low, high)
 
 
 @compiled
@@ -128,11 +124,22 @@ def _least(row: Floats, q2: float, slope: float, low: float, high: float) -> flo
     """Return the least of `slope * w + outline` for `w` from `low` to `high`; far if there is none."""
     if low > high:
         return _FAR
-    if row[ARC_R] > 0.0 and row[CENTRE_R] > 0.0:
-        w = _on_corner(row, q2, slope, low, high)
+    if low + high >= 0.0:  # most often it is at the end that is nearer
+        z, rises = _at(row, q2, slope, low)
+        if rises >= 0.0:
+            return z
+        z, rises = _at(row, q2, slope, high)
+        if rises <= 0.0:
+            return z
     else:
-        w = min(max(_stationary(row, q2, slope), low), high)
-    return slope * w + _at(row, q2 + w * w)
+        z, rises = _at(row, q2, slope, high)
+        if rises <= 0.0:
+            return z
+        z, rises = _at(row, q2, slope, low)
+        if rises >= 0.0:
+            return z
+    w = min(max(_stationary(row, q2, slope, low, high), low), high)
+    return _at(row, q2, slope, w)[0]
 
 
 @compiled
@@ -145,30 +152,43 @@ def lowest(rows: Floats, q2: float, slope: float, before: float, after: float) -
         w = min(max(0.0, before), after)
         return level(rows, math.sqrt(q2 + w * w))
     found = _FAR
+    nearest = min(max(0.0, before), after)
+    nearest2, farthest2 = q2 + nearest * nearest, q2 + max(before * before, after * after)
     for i in range(rows.shape[0]):
-        outer2 = rows[i, TO_R] * rows[i, TO_R] - q2
-        if outer2 < 0.0:
+        outer2, inner2 = rows[i, TO_R] * rows[i, TO_R], rows[i, FROM_R] * rows[i, FROM_R]
+        if outer2 < nearest2 or inner2 > farthest2:
             continue
-        outer = math.sqrt(outer2)
-        inner2 = rows[i, FROM_R] * rows[i, FROM_R] - q2
-        if inner2 <= 0.0:
+        outer = math.sqrt(outer2 - q2) if outer2 < farthest2 else _FAR
+        if inner2 <= nearest2:
             found = min(found, _least(rows[i], q2, slope, max(before, -outer), min(after, outer)))
         else:
-            inner = math.sqrt(inner2)
+            inner = math.sqrt(max(0.0, inner2 - q2))
             found = min(found, _least(rows[i], q2, slope, max(before, -outer), min(after, -inner)))
             found = min(found, _least(rows[i], q2, slope, max(before, inner), min(after, outer)))
     return found
 
 
 @compiled
-def _bounds(rows: Floats, reach: float, bounds: Floats) -> None:
-    """Write heights that the outline does not get below, by the square of the distance in equal steps.
-
-    The distance is that from the middle of a short way, whose ends are not farther than `reach` from it.
-    """
+def _bounds(rows: Floats, bounds: Floats) -> None:
+    """Write heights that the outline does not get below, by the square of the distance in equal steps."""
     outer = rows[rows.shape[0] - 1, TO_R]
     for i in range(bounds.shape[0]):
-        bounds[i] = level(rows, max(0.0, (outer + reach) * math.sqrt(i / bounds.shape[0]) - reach))
+        bounds[i] = level(rows, max(0.0, outer * math.sqrt(i / bounds.shape[0]) - _ROUNDING_MM))
+
+
+@compiled
+def _bound(bounds: Floats, per_bound: float, d2: float) -> float:
+    """Return a height that the outline does not get below at the square of a distance, or farther away."""
+    return float(bounds[min(int(d2 * per_bound), bounds.shape[0] - 1)])
+
+
+@compiled
+def _any_above(heights: Floats, z: float) -> bool:
+    """Tell whether any height is above another one."""
+    count = 0
+    for i in range(heights.shape[0]):
+        count += heights[i] > z
+    return count > 0
 
 
 @compiled
@@ -190,40 +210,48 @@ def span(begin: Floats, end: Floats, ux: float, uy: float, radius: float, y: flo
 
 
 @compiled
+def _columns(grid: Grid, low: float, high: float) -> tuple[int, int]:
+    """Return the first column from one x to another, and the one after the last."""
+    first = max(0, math.ceil((low - grid.x0) / grid.cell_mm))
+    return first, min(grid.z.shape[1], math.floor((high - grid.x0) / grid.cell_mm) + 1)
+
+
+@compiled
 def _sweep_chord(
     grid: Grid, begin: Floats, end: Floats, rows: Floats, bounds: Floats, cuts: bool, figures: Floats
 ) -> None:
     length, ux, uy, slope = chord(begin, end)
     radius = rows[rows.shape[0] - 1, TO_R]
     lowest_tip = min(begin[2], end[2])
-    reach = _REACH_CELLS * grid.cell_mm
-    per_bound, last_bound = bounds.shape[0] / (radius + reach) ** 2, bounds.shape[0] - 1
-    middle_x, middle_y = 0.5 * (begin[0] + end[0]), 0.5 * (begin[1] + end[1])
-    ny, nx = grid.z.shape
-    first_y = max(0, math.ceil((min(begin[1], end[1]) - radius - grid.y0) / grid.cell_mm))
-    last_y = min(ny - 1, math.floor((max(begin[1], end[1]) + radius - grid.y0) / grid.cell_mm))
+    per_bound = bounds.shape[0] / (radius * radius)
+    low_y, high_y = min(begin[1], end[1]), max(begin[1], end[1])
+    first_y = max(0, math.ceil((low_y - radius - grid.y0) / grid.cell_mm))
+    last_y = min(grid.z.shape[0] - 1, math.floor((high_y + radius - grid.y0) / grid.cell_mm))
+    first_x, end_x = _columns(grid, min(begin[0], end[0]) - radius, max(begin[0], end[0]) + radius)
     volume, depth, left, right = 0.0, 0.0, _FAR, -_FAR
     for iy in range(first_y, last_y + 1):
         y = grid.y0 + iy * grid.cell_mm
+        row = grid.z[iy]
+        away = max(0.0, low_y - y, y - high_y)
+        floor = max(lowest_tip + _bound(bounds, per_bound, away * away), grid.bottom)
+        if length < radius and not _any_above(row[first_x:end_x], floor):
+            continue
         low, high = span(begin, end, ux, uy, radius, y)
         if low > high:
             continue
-        first_x = max(0, math.ceil((low - grid.x0) / grid.cell_mm))
-        last_x = min(nx - 1, math.floor((high - grid.x0) / grid.cell_mm))
-        row = grid.z[iy]
+        first, last = _columns(grid, low, high)
         dy = y - begin[1]
-        for ix in range(first_x, last_x + 1):
+        for ix in range(first, last):
             here = row[ix]
-            if here <= lowest_tip or here <= grid.bottom:
+            if here <= floor:
                 continue
             x = grid.x0 + ix * grid.cell_mm
-            if length <= 2.0 * reach:
-                mx, my = x - middle_x, y - middle_y
-                if here <= lowest_tip + bounds[min(int((mx * mx + my * my) * per_bound), last_bound)]:
-                    continue
             dx = x - begin[0]
             along = dx * ux + dy * uy
             beside = dy * ux - dx * uy
+            past = along - min(max(along, 0.0), length)
+            if here <= lowest_tip + _bound(bounds, per_bound, past * past + beside * beside):
+                continue
             if length > 0.0:
                 z = begin[2] + slope * along + lowest(rows, beside * beside, slope, -along, length - along)
             else:
@@ -271,9 +299,9 @@ def sweep(grid: Grid, places: Floats, cutter: Floats, holder: Floats, cut: Float
     """
     bounds, holder_bounds = np.empty(_BOUNDS), np.empty(_BOUNDS)
     if cutter.shape[0]:
-        _bounds(cutter, _REACH_CELLS * grid.cell_mm, bounds)
+        _bounds(cutter, bounds)
     if holder.shape[0]:
-        _bounds(holder, _REACH_CELLS * grid.cell_mm, holder_bounds)
+        _bounds(holder, holder_bounds)
     for n in range(places.shape[0] - 1):
         if cutter.shape[0]:
             _sweep_chord(grid, places[n], places[n + 1], cutter, bounds, True, cut[n])

@@ -11,7 +11,7 @@ import numpy.typing as npt
 
 from polycnc.runner._machined import Machined
 from polycnc.stock import (
-    Cutting,
+    Removing,
     Rows,
     Stock,
     Tool,
@@ -50,7 +50,7 @@ class Watched(Protocol):
         ...
 
 
-def watched(machined: Machined, coarser: int) -> tuple[Watched, Cutting | TurningCutting | TurnedCutting]:
+def watched(machined: Machined, coarser: int) -> tuple[Watched, Removing | TurningCutting | TurnedCutting]:
     """Return the body of a run as it was, in cells `coarser` times as wide as need be, and what cuts it again."""
     form, course, tools = machined.form, machined.course, machined.rotating
     if isinstance(machined.stock, Turned):
@@ -64,7 +64,7 @@ def watched(machined: Machined, coarser: int) -> tuple[Watched, Cutting | Turnin
         return _WatchedSolid(solid, 2 * coarser, tools), TurnedCutting(solid, tools)
     stock = form.body(course, tools)
     several = coarser * max(1, -(-max(stock.heights.shape) // MOST_ACROSS))
-    return _WatchedField(stock, several, tools), Cutting(stock, tools)
+    return _WatchedField(stock, several, tools), Removing(stock, tools)
 
 
 class _WatchedField:
@@ -103,8 +103,10 @@ class _WatchedField:
         part = grid.z[y.start * n : y.stop * n, x.start * n : x.stop * n]
         high, wide = y.stop - y.start, x.stop - x.start
         short = ((0, high * n - part.shape[0]), (0, wide * n - part.shape[1]))
-        cells = np.pad(part, short, mode="edge").reshape(high, n, wide, n)
-        found: Levels = np.rint((cells.mean(axis=(1, 3)) - grid.bottom) / self.level).astype(np.uint16)
+        if short[0][1] or short[1][1]:
+            part = np.pad(part, short, mode="edge")
+        heights = part if n == 1 else part.reshape(high, n, wide, n).mean(axis=(1, 3))
+        found: Levels = np.rint((heights - grid.bottom) / self.level).astype(np.uint16)
         return found
 
 
