@@ -17,7 +17,7 @@ from polycnc.nc.macro import MacroLanguage
 from support.often import share
 from support.rs274 import COMMAND, call
 
-DIFFERENTIAL = 60
+DIFFERENTIAL = share(60)
 FUZZED = share(1000)
 _FEED = re.compile(r"STRAIGHT_FEED\((-?[0-9.]+),")
 

@@ -18,7 +18,7 @@ from support.post_models import MACROS, Node, Slow, macro_text
     place=st.sampled_from((0, 1, 2)),
     separator=st.sampled_from(("", " ", "--")),
 )
-@settings(deadline=None, max_examples=20)
+@settings(deadline=None, max_examples=share(40))
 def test_compiled_macros_write_what_a_slow_interpreter_writes(
     macros: list[list[Node]], place: int, separator: str
 ) -> None:

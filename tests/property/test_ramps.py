@@ -63,7 +63,7 @@ def test_a_segment_is_gone_along_once_and_within_its_limits(
         (ramps[SPEED_OUT] - ramps[SPEED_PEAK], ramps[TIME_OUT]),
     ):
         assert abs(change) <= accel * time * (1.0 + 1e-6) + 1e-12
-    times = np.linspace(0.0, duration, 2001)
+    times = np.linspace(0.0, duration, 701)
     places, planned = np.array([ramps_at(ramps, t, jerkrel) for t in times]).T
     assert np.all(np.diff(places) >= -1e-12 * length)
     assert np.all(planned >= -1e-12)
@@ -109,7 +109,7 @@ def test_beside_a_corner_the_acceleration_given_up_is_not_used(
     plan_ramps(ramps, speed_in, length, cap, accel, through, 0.0)
     duration = ramps_duration(ramps)
     assert ramps[SPEED_OUT] <= through * (1.0 + 1e-9)
-    times = np.linspace(0.0, duration, 2001)
+    times = np.linspace(0.0, duration, 701)
     step = times[1] - times[0]
     places, planned = np.array([ramps_at(ramps, t, jerkrel) for t in times]).T
     assert places[-1] == length
@@ -117,7 +117,7 @@ def test_beside_a_corner_the_acceleration_given_up_is_not_used(
     travelled = np.concatenate([[0.0], np.cumsum(0.5 * (planned[1:] + planned[:-1]) * step)])
     assert np.allclose(places, travelled, rtol=0.0, atol=fastest * duration / 500.0)
     used = np.abs(np.diff(planned)) / step
-    allowed = np.full(2000, accel)
+    allowed = np.full(used.shape, accel)
     allowed[places[1:] <= zone * length] *= 1.0 - share
     beside = times[:-1] >= duration - dt
     allowed[beside] = np.minimum(allowed[beside], accel * (1.0 - last))

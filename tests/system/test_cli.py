@@ -118,13 +118,9 @@ def test_servo_on_ideal_servos_is_remarked_on(part: Path) -> None:
     assert "mill3 has ideal servos" in polycnc("run", "part.nc", "--servo", cwd=part).stderr
 
 
-@pytest.mark.parametrize("ending", ["png", "svg"])
-def test_plot(part: Path, ending: str) -> None:
-    assert (
-        f"wrote      part.{ending}" in polycnc("run", "part.nc", "--plot", f"part.{ending}", cwd=part).stdout
-    )
-    start = (part / f"part.{ending}").read_bytes()[:200]
-    assert start.startswith(b"\x89PNG") if ending == "png" else b"<?xml" in start
+def test_plot(part: Path) -> None:  # the other formats: tests/unit/test_plot.py
+    assert "wrote      part.png" in polycnc("run", "part.nc", "--plot", "part.png", cwd=part).stdout
+    assert (part / "part.png").read_bytes().startswith(b"\x89PNG")
 
 
 def test_a_program_without_motion_gives_empty_files(tmp_path: Path) -> None:

@@ -424,7 +424,7 @@ IMPOSSIBLE = frozenset(name for name in WRITES if "too much" in name or "elsewhe
     "download of two", "PUT one of another number", "PUT one in UTF-16", "PUT a name of none",
     "DELETE the selected one",
 }  # fmt: skip
-_ORDINARY = 60
+_ORDINARY = 25
 
 
 def test_each_answer_to_a_write_is_so() -> None:
