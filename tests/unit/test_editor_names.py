@@ -9,6 +9,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from polycnc import runner
+from polycnc.editor._about import about_name
+from polycnc.editor._codes import completions
 from polycnc.editor._format import formatted
 from polycnc.editor._names import Name, Role, givers, name_at, names_of, program_file, same
 from polycnc.editor._place import Span
@@ -174,3 +176,65 @@ def test_a_formatted_text_says_the_same_and_stays_as_it_is(lines: list[str], dia
         for text in (before, then)
     ]
     assert wrong[0] == wrong[1]
+
+
+ABOUT = [
+    "#<_safe> = 5 (mm)",
+    "o<hole> sub",
+    "#<deep> = #1 (how deep)",
+    "#<x> = [#2]",
+    "o101 while [#<deep> gt 0]",
+    "#<deep> = [#<deep> - 1]",
+    "G1 Z-#<deep> X#3",
+    "o101 endwhile",
+    "o102 if [#<_x> gt 3]",
+    "o102 endif",
+    "o<hole> endsub",
+    "o5 do",
+    "o5 while [#7 lt 3]",
+    "o<hole> call [2] [3]",
+    "G0 Z#<_safe>",
+    "o<far> call",
+]
+
+
+@pytest.mark.parametrize(
+    ("line", "word", "said"),
+    [
+        (14, "#<_safe>", "**#<_safe>**: common parameter|Set in line 1 to 5"),
+        (6, "#<deep>", "**#<deep>**: local parameter|Set in lines 3, 6"),
+        (8, "#<_x>", "**#<_x>**: value of the control"),
+        (3, "#<x>", "**#<x>**: local parameter|Set in line 4: `#<x> = [#2]`"),
+        (12, "#7", "**#7**: local variable: an argument of a call, or set here"),
+        (
+            13,
+            "hole",
+            "**O<hole>**: sub-program in lines 2 to 11, called once here|Arguments: #1 deep, #2 x, #3",
+        ),
+        (15, "far", "**O<far>**: sub-program in far.ngc"),
+        (7, "101", "**O101**: loop in lines 5 to 8: `o101 while [#<deep> gt 0]`"),
+        (9, "102", "**O102**: condition in lines 9 to 10: `o102 if [#<_x> gt 3]`"),
+        (12, "5", "**O5**: loop in lines 12 to 13: `o5 do`"),
+    ],
+)
+def test_a_name_says_what_it_is(line: int, word: str, said: str) -> None:
+    names = list(names_of(ABOUT, LINUXCNC))
+    found = name_at(names, line, ABOUT[line].index(word) + 1)
+    assert found is not None
+    file = Path("x/far.ngc") if word == "far" else None
+    assert about_name(names, ABOUT, found, LINUXCNC, file).split("  \n") == said.split("|")
+
+
+@pytest.mark.parametrize(
+    ("written", "first"),
+    [
+        ("G0 X#<", ["_safe", "deep", "x", "_x"]),
+        ("o<", ["hole", "far"]),
+        ("o<hole> c", ["sub", "endsub", "call"]),
+        ("N3 O7 e", ["sub", "endsub", "call"]),
+    ],
+)
+def test_names_of_the_text_are_completed(written: str, first: list[str]) -> None:
+    lines = [*ABOUT, written]
+    found = completions(lines, len(lines) - 1, len(written), LINUXCNC, list(names_of(lines, LINUXCNC)))
+    assert [each.label for each in found][: len(first)] == first

@@ -175,6 +175,19 @@ def test_all_errors_are_collected_in_order() -> None:
     assert listing(channel) == ["line X3 F100"]
 
 
+def test_an_error_is_no_cause_of_others() -> None:
+    def wrong(program: str, dialect: str = "din") -> list[int]:
+        channel = prepare(program, collect_errors=True, dialect=dialect)
+        return [error.position.line for error in channel.errors if error.position]
+
+    assert wrong("G1 X1\nX5\nG3 X7 Y2 R2\n") == [1]  # the feed is missed once, and its move made
+    assert wrong("G1 X1 E5 F100\nX5\nG2 X9 I2\n") == [1]  # F of a refused block counts
+    contour = "N1 G0 X20.\nG1 Z-1.\nN2 X50. Z-9.\n"
+    assert wrong(f"G98 G0 X60 Z1\nG71 P1 Q2 U1. F300\n{contour}G0 X50.\n", "fanuc-lathe") == [2]
+    assert wrong("#1=[SQRT(2)]\n#2=5\nG0 X#2\n", "linuxcnc") == [1]
+    assert wrong("G21\nN1 G0 X10 *45\n", "fanuc") == [2]
+
+
 def test_an_error_in_a_repeated_sub_program_is_noted_once() -> None:
     channel = prepare("M98 P1 L9\nM98 P1\nM30\nO1\nG77\nM99\n", collect_errors=True)
     assert len(channel.errors) == 1
@@ -187,7 +200,7 @@ def test_a_contour_that_is_too_narrow_is_noted_once_and_the_rest_checked() -> No
 
 
 def test_there_is_an_end_to_collecting() -> None:
-    channel = prepare("G1 X1\n" * 5000, collect_errors=True)
+    channel = prepare("G999\n" * 5000, collect_errors=True)
     assert len(channel.errors) == 1000
     assert channel.messages.all()[-1].text == "the program was checked up to its error number 1000"
 

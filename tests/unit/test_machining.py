@@ -177,6 +177,11 @@ def test_rapids_that_are_fine(moves: str) -> None:
     assert remarks(READY + moves) == []
 
 
+def test_what_follows_a_line_that_begins_with_a_percent_sign() -> None:
+    assert remarks("%\nG0 X1\n% fan on\nG0 X2\n") == [("unread", 3, 1)]
+    assert remarks("% begin\nG0 X1\n%\nO2\nG0 X2\n") == []
+
+
 def test_a_program_stop_waits() -> None:
     program = READY + "G0 X1\nM0\nG0 X2\nM00\nM1\n"
     assert remarks(program) == [("program_stop", 4, 2)]

@@ -134,6 +134,21 @@ def test_a_goto_finds_the_next_block_of_a_number_before_the_first() -> None:
 def test_a_semicolon_ends_a_block_at_the_end_of_its_line() -> None:
     _, variables = run("O1; \n#100=0;\nN60;\n#100=#100+1 ;\nIF [#100 LT 3] GOTO 60;\n#101=7 ;\t\nM30;")
     assert (variables.get(100), variables.get(101)) == (3.0, 7.0)
+    made, _ = run("G90 G0 X5; \t(out; there) (far)\nY2;(up)\nM30;\n")
+    assert made.reading.position == pytest.approx({"X": 5.0, "Y": 2.0, "Z": 0.0}, abs=1e-9)
+    made, _ = run("G0 X5; Y2\nM30\n")
+    assert made.error is not None
+    assert "write what follows into a line of its own" in made.error.hint
+
+
+def test_words_may_be_written_by_their_first_two_letters() -> None:
+    made, variables = run(
+        "WH[#100 LT 4]DO1\n#100=#100+SI[90]\nEN1\nIF[#100EQ4]TH#101=RO[2.6]+FU [0.1]\nM30\n"
+    )
+    assert made.error is None, str(made.error)
+    assert (variables.get(100), variables.get(101)) == (4.0, 4.0)
+    made, _ = run("GO10\nN10 M30\n")  # which is G1 with a slip
+    assert made.error is not None
 
 
 def test_a_statement_may_stand_right_behind_its_block_number() -> None:

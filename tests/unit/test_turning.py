@@ -534,6 +534,15 @@ def test_roughing_stops_at_an_arc() -> None:
     assert "arc X20 Z-18 about Z-10 X20 by -90 F300" in found
 
 
+@pytest.mark.parametrize("both", ["", " Z2."])
+def test_a_rapid_back_at_the_end_of_a_contour_is_not_roughed(both: str) -> None:
+    contour = "N1 G0 X40. {}\nG1 Z-4. F0.1\nX50. Z-18.{}\n{}G0 X60.\n"
+    head = "G71 U4. R1.\nG71 P1 Q2 U0 W0 F0.3\n"
+    plain = turned(head + contour.format(both, "\nN2 G40", ""))
+    assert turned(head + contour.format(both, "", "N2 G0 G40 Z2.\n")) == plain
+    assert wrong(head + contour.format(both, "", "N2 G1 Z2.\n")).startswith("G71: the contour comes back")
+
+
 def test_roughing_a_contour_that_begins_with_a_face() -> None:
     """The face from radius 8 to 12 lies at the start's Z: down to it, from 25, in cuts of 4: 21, 17, 13, 9."""
     contour = "N1 G0 X16.\nG1 X24. F0.1\nZ-10.\nN2 X50.\n"

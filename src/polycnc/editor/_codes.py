@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Sequence
 from dataclasses import dataclass
 
+from polycnc.editor._names import PROGRAM, Name
 from polycnc.editor._place import Span, is_statement, words_only
 from polycnc.nc import Action, Dialect, MAction
 from polycnc.nc.cpl import FUNCTION_GROUPS, STATEMENTS
@@ -15,6 +17,13 @@ from polycnc.nc.rs274 import KNOWN_NAMES
 
 _CODE = re.compile(r"(?<![A-Za-z_%$])([GM])[ \t]*([0-9]{1,6}(?:\.[0-9]{0,6})?)", re.IGNORECASE)
 _ADDRESS = re.compile(r"(?<![A-Za-z_%$#.])([A-Z])[ \t]*[-+]?[0-9.#\[][0-9.\[\]#]*", re.IGNORECASE)
+_O_NAMED = re.compile(r"[ \t]*(?:N[0-9]+[ \t]*)?O[ \t]*(?:<[^>]*>|[0-9]+)[ \t]+[A-Za-z]*", re.IGNORECASE)
+_O_BEGUN = re.compile(r"[ \t]*(?:N[0-9]+[ \t]*)?O[ \t]*<[^>]*", re.IGNORECASE)
+_PARAMETER_BEGUN = re.compile(r"#[ \t]*<[^>]*\Z")
+_O_WORDS = (
+    "sub", "endsub", "call", "return", "if", "elseif", "else", "endif", "while", "endwhile", "do",
+    "repeat", "endrepeat", "break", "continue",
+)  # fmt: skip
 _NAME_BEGUN = re.compile(r"[A-Za-z_<@#][A-Za-z0-9_]*\Z")
 _BEGUN = re.compile(r"(?:\A|(?<=[^A-Za-z_%$]))([GM])[0-9]*\.?[0-9]*\Z", re.IGNORECASE)
 
@@ -48,11 +57,15 @@ def word(lines: list[str], line: int, character: int, dialect: Dialect) -> tuple
     return None
 
 
-def completions(lines: list[str], line: int, character: int, dialect: Dialect) -> list[Completion]:
-    """Return the codes of the dialect with the letter that has been begun before a place."""
+def completions(
+    lines: list[str], line: int, character: int, dialect: Dialect, names: Sequence[Name] = ()
+) -> list[Completion]:
+    """Return the codes of the dialect with the letter that has been begun before a place, or `names` of the text."""
     if not 0 <= line < len(lines):
         return []
     before = lines[line][:character]
+    if dialect.language == "rs274" and (found := _names_begun(before, line, names)) is not None:
+        return found
     begun = _BEGUN.search(words_only(before, dialect))
     if begun is None:
         return _functions(before, dialect) if _NAME_BEGUN.search(before) else []
@@ -62,6 +75,22 @@ def completions(lines: list[str], line: int, character: int, dialect: Dialect) -
         ]
     codes = sorted({int(code) for code in dialect.m})
     return [Completion(f"M{code}", _plain(dialect.m_action(code))) for code in codes]
+
+
+def _names_begun(before: str, line: int, names: Sequence[Name]) -> list[Completion] | None:
+    """Return what may follow an O that has been begun, or `#<`; None where neither has."""
+    elsewhere = [each for each in names if each.span.line != line]
+    if _O_NAMED.fullmatch(before):
+        return [Completion(word, "O-word") for word in _O_WORDS]
+    if _O_BEGUN.fullmatch(before):
+        keys = dict.fromkeys(each.key for each in elsewhere if each.kind == PROGRAM)
+        return [Completion(key, "sub-program") for key in keys]
+    if _PARAMETER_BEGUN.search(before):
+        keys = dict.fromkeys(each.key for each in elsewhere if each.key.startswith("#<"))
+        own = [key[2:-1] for key in keys if key[2:-1] not in KNOWN_NAMES]
+        known = [Completion(name, "value of the control") for name in KNOWN_NAMES]
+        return [*(Completion(name, "parameter") for name in own), *known]
+    return None
 
 
 def _functions(before: str, dialect: Dialect) -> list[Completion]:
@@ -77,8 +106,6 @@ def _functions(before: str, dialect: Dialect) -> list[Completion]:
         case "macro" if "[" in before or "=" in before or "#" in before:
             rows_of = {**MACRO_FUNCTIONS, **MACRO_OPERATORS}
             return [Completion(name, _sentence(run)) for name, run in rows_of.items()]
-        case "rs274" if before.rpartition("#")[2].startswith("<"):
-            return [Completion(name, "value of the control") for name in KNOWN_NAMES]
         case "rs274" if "[" in before:
             return [
                 Completion(name.rstrip("_").upper(), "function")

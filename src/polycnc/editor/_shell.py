@@ -5,37 +5,34 @@ from __future__ import annotations
 import asyncio
 from collections.abc import Coroutine, Iterator
 from contextlib import contextmanager, suppress
-from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 from typing import Any
-from urllib.parse import urlsplit
 
 from lsprotocol import types as lsp
 from pygls.exceptions import JsonRpcException
-from pygls.uris import to_fs_path
 
+from polycnc.editor._about import about_name
 from polycnc.editor._codes import completions, hover, word
 from polycnc.editor._document import Document, characters, units
 from polycnc.editor._findings import Finding, findings
 from polycnc.editor._format import formatted
-from polycnc.editor._kinds import Kind, kind_of
-from polycnc.editor._names import PROGRAM, Name, Role, givers, name_at, names_of, program_file, same
+from polycnc.editor._kinds import Kind
+from polycnc.editor._names import BLOCK, PROGRAM, Name, Role, givers, name_at, names_of, program_file, same
 from polycnc.editor._newest import LONGEST_S, GoOn, Newest, Overtaken, TooLong, within
 from polycnc.editor._outline import Symbol, outline
-from polycnc.editor._place import MOST_LINE, Span
+from polycnc.editor._place import Span
 from polycnc.editor._protocol import EditorServer
 from polycnc.editor._quick import Checked, quick_findings
 from polycnc.editor._reading import held, taken, word_meaning
-from polycnc.editor._rename import CONTROL, STAND_ALONE, check_renaming, renamed
-from polycnc.editor._stand_alone import sap_completions, sap_hover, sap_names, sap_outline
-from polycnc.editor._tables import control_names, key_completions, key_hover, table_outline
+from polycnc.editor._rename import check_renaming, renamed
+from polycnc.editor._stand_alone import sap_completions, sap_hover, sap_outline
+from polycnc.editor._tables import key_completions, key_hover, table_outline
+from polycnc.editor._texts import Texts, name_of
 from polycnc.errors import UsageError
 from polycnc.machine import MachineConfig
-from polycnc.nc import Dialect, ModalWords, ProgramText, choose_dialect
+from polycnc.nc import Dialect, ModalWords, ProgramText
 from polycnc.runner import Survey, holds_before, machine_for, survey
-
-_NOTHING = Document("")
 
 
 class _Editor:
@@ -49,18 +46,18 @@ class _Editor:
         self._checked: dict[str, Checked] = {}
         self._surveys: dict[str, tuple[str, Survey | None]] = {}
         self._surveying: dict[str, asyncio.Future[None]] = {}
-        self._documents: dict[str, Document] = {}
+        self._texts = Texts(dialect)
         self._under_way: set[asyncio.Task[None]] = set()
 
     # ------------------------------------------------------------------ texts
 
     def opened(self, params: lsp.DidOpenTextDocumentParams) -> None:
         item = params.text_document
-        self._documents[item.uri] = Document(item.text, item.version)
+        self._texts.put(item.uri, Document(item.text, item.version))
         self._begin(self._check(item.uri))
 
     def changed(self, params: lsp.DidChangeTextDocumentParams) -> None:
-        uri, document = params.text_document.uri, self._document(params.text_document.uri)
+        uri, document = params.text_document.uri, self._texts.document(params.text_document.uri)
         for change in params.content_changes:
             if isinstance(change, lsp.TextDocumentContentChangePartial):
                 begin, end = change.range.start, change.range.end
@@ -69,7 +66,7 @@ class _Editor:
                 )
             else:
                 document = Document(change.text)
-        self._documents[uri] = Document(document.text, params.text_document.version)
+        self._texts.put(uri, Document(document.text, params.text_document.version))
         self._begin(self._check(uri))
 
     def saved(self, params: lsp.DidSaveTextDocumentParams) -> None:
@@ -79,7 +76,7 @@ class _Editor:
     def closed(self, params: lsp.DidCloseTextDocumentParams) -> None:
         uri = params.text_document.uri
         self._newest.drop(uri)
-        self._documents.pop(uri, None)
+        self._texts.drop(uri)
         self._surveys.pop(uri, None)
         self._checked.pop(uri, None)
         self._server.text_document_publish_diagnostics(lsp.PublishDiagnosticsParams(uri, []))
@@ -88,7 +85,7 @@ class _Editor:
 
     async def hover(self, params: lsp.HoverParams) -> lsp.Hover | None:
         uri = params.text_document.uri
-        document, kind, dialect = self._read(uri)
+        document, kind, dialect = self._texts.read(uri)
         line, character = _place(document, params.position)
         if kind is Kind.STAND_ALONE:
             found = sap_hover(document.lines, line, character)
@@ -105,6 +102,8 @@ class _Editor:
         self, uri: str, document: Document, line: int, character: int, dialect: Dialect
     ) -> tuple[str, Span] | None:
         """Return what a word of a program means, what holds before its line and how long that takes, and its place."""
+        if 0 <= line < len(document.lines) and (found := self._about(uri, line, character, dialect)):
+            return found
         code = hover(document.lines, line, character, dialect)
         at = word(document.lines, line, character, dialect)
         if code is None and at is None:
@@ -123,15 +122,31 @@ class _Editor:
         content = "\n\n".join(filter(None, parts))
         return (content, span) if content else None
 
+    def _about(self, uri: str, line: int, character: int, dialect: Dialect) -> tuple[str, Span] | None:
+        """Return what the name at a place is, and where it stands; None where none stands."""
+        own = list(names_of([self._texts.document(uri).lines[line]], dialect))
+        at = name_at(own, 0, character)
+        if at is None or at.kind == BLOCK:
+            return None
+        named = self._texts.named(uri)
+        found = name_at(named.names, line, character)
+        assert found is not None
+        place = None
+        if found.kind == PROGRAM and not givers(named.names, found):
+            place = program_file(found.key, named.document.text, name_of(uri), dialect)
+        file = place[0] if place else None
+        return about_name(named.names, named.document.lines, found, dialect, file), found.span
+
     def completion(self, params: lsp.CompletionParams) -> list[lsp.CompletionItem]:
-        document, kind, dialect = self._read(params.text_document.uri)
+        document, kind, dialect = self._texts.read(params.text_document.uri)
         line, character = _place(document, params.position)
         if kind is Kind.STAND_ALONE:
             found = sap_completions(document.text)
         elif dialect is None:
             found = key_completions(document.lines, line, character, kind)
         else:
-            found = completions(document.lines, line, character, dialect)
+            names = self._texts.named(params.text_document.uri).names if dialect.language == "rs274" else []
+            found = completions(document.lines, line, character, dialect, names)
         item = lsp.CompletionItemKind.Keyword
         return [
             lsp.CompletionItem(each.label, kind=item, detail=each.detail, sort_text=f"{number:04}")
@@ -140,7 +155,7 @@ class _Editor:
 
     async def symbols(self, params: lsp.DocumentSymbolParams) -> list[lsp.DocumentSymbol]:
         uri = params.text_document.uri
-        document, kind, dialect = self._read(uri)
+        document, kind, dialect = self._texts.read(uri)
         if kind is Kind.STAND_ALONE:
             found = sap_outline(document.text, len(document.lines))
         elif dialect is not None:
@@ -154,15 +169,15 @@ class _Editor:
 
     def definition(self, params: lsp.DefinitionParams) -> list[lsp.Location]:
         uri = params.text_document.uri
-        named = self._named(uri)
-        found = named.at(params.position)
+        named = self._texts.named(uri)
+        found = named.at(*_place(named.document, params.position))
         if found is None:
             return []
         given = givers(named.names, found)
-        _, _, dialect = self._read(uri)
+        _, _, dialect = self._texts.read(uri)
         if given or found.kind != PROGRAM or dialect is None:
             return _locations(uri, named.document, given)
-        place = program_file(found.key, named.document.text, _name(uri), dialect)
+        place = program_file(found.key, named.document.text, name_of(uri), dialect)
         if place is None:
             return []
         start = lsp.Position(place[1], 0)
@@ -170,16 +185,16 @@ class _Editor:
 
     def references(self, params: lsp.ReferenceParams) -> list[lsp.Location]:
         uri = params.text_document.uri
-        named = self._named(uri)
-        found = named.at(params.position)
+        named = self._texts.named(uri)
+        found = named.at(*_place(named.document, params.position))
         asked = [] if found is None else same(named.names, found)
         if not params.context.include_declaration:
             asked = [each for each in asked if each.role is Role.USED]
         return _locations(uri, named.document, asked)
 
     def can_rename(self, params: lsp.PrepareRenameParams) -> lsp.Range | None:
-        named = self._named(params.text_document.uri)
-        found = named.at(params.position)
+        named = self._texts.named(params.text_document.uri)
+        found = named.at(*_place(named.document, params.position))
         if found is None:
             return None
         with _refusals():
@@ -188,8 +203,8 @@ class _Editor:
 
     def rename(self, params: lsp.RenameParams) -> lsp.WorkspaceEdit | None:
         uri = params.text_document.uri
-        named = self._named(uri)
-        found = named.at(params.position)
+        named = self._texts.named(uri)
+        found = named.at(*_place(named.document, params.position))
         if found is None:
             return None
         with _refusals():
@@ -198,7 +213,7 @@ class _Editor:
         return lsp.WorkspaceEdit({uri: edits})
 
     def format(self, params: lsp.DocumentFormattingParams) -> list[lsp.TextEdit]:
-        document, _, dialect = self._read(params.text_document.uri)
+        document, _, dialect = self._texts.read(params.text_document.uri)
         if dialect is None:
             return []
         lines = document.lines
@@ -208,15 +223,6 @@ class _Editor:
             if before != after
         ]
 
-    def _named(self, uri: str) -> _Named:
-        """Return a text with its names, and what they are names in."""
-        document, kind, dialect = self._read(uri)
-        if dialect is not None:
-            return _Named(document, list(names_of(document.lines, dialect)), dialect.language)
-        if kind is Kind.STAND_ALONE:
-            return _Named(document, sap_names(document.text), STAND_ALONE)
-        return _Named(document, control_names(document.lines) if kind is Kind.CONTROL else [], CONTROL)
-
     # ------------------------------------------------------------------ checks
 
     def _begin(self, work: Coroutine[Any, Any, None]) -> None:
@@ -225,7 +231,7 @@ class _Editor:
         task.add_done_callback(self._under_way.discard)
 
     async def _check(self, uri: str) -> None:
-        document, name, loop = self._document(uri), _name(uri), asyncio.get_running_loop()
+        document, name, loop = self._texts.document(uri), name_of(uri), asyncio.get_running_loop()
         before = self._checked.get(uri)
 
         def work(go_on: GoOn) -> list[Finding]:
@@ -241,11 +247,11 @@ class _Editor:
         except Exception as error:  # whatever it is, it is ours: nobody is shown a traceback
             what = f"internal error, the mistake is not yours: {type(error).__name__}: {error}"
             found = [Finding(Span(0, 0, 1), f"{what}\nPlease report it, with this text.", "", True)]
-        if found is not None and uri in self._documents:
+        if found is not None and uri in self._texts:
             self._checked[uri] = Checked(document, found)
             self._publish(uri, document, found)
 
-        document, _, dialect = self._read(uri)
+        document, _, dialect = self._texts.read(uri)
         if found is not None and dialect is not None:
             await self._survey(uri, document, dialect)
 
@@ -253,7 +259,7 @@ class _Editor:
         """Return the times of a program; None where it has changed meanwhile, or is not run."""
         text = document.text
         while (known := self._surveys.get(uri)) is None or known[0] != text:
-            if uri not in self._documents or self._document(uri).text != text:
+            if uri not in self._texts or self._texts.document(uri).text != text:
                 return None
             if uri in self._surveying:
                 await asyncio.wait([self._surveying[uri]])
@@ -262,10 +268,10 @@ class _Editor:
         return known[1]
 
     async def _keep_survey(self, uri: str, text: str, dialect: Dialect) -> None:
-        name = _name(uri)
+        name = name_of(uri)
 
         def go_on() -> None:
-            if self._document(uri).text is not text:
+            if self._texts.document(uri).text is not text:
                 raise Overtaken
 
         def work(_: GoOn) -> Survey | None:
@@ -287,13 +293,13 @@ class _Editor:
             found = await self._times.run(uri, work)
         finally:
             self._surveying.pop(uri, None)
-            if uri in self._documents:  # else it has been closed meanwhile
+            if uri in self._texts:  # else it has been closed meanwhile
                 self._surveys[uri] = (text, found)
 
     def _holds_before(
         self, uri: str, document: Document, line: int, dialect: Dialect
     ) -> tuple[ModalWords, dict[str, float]] | None:
-        program = ProgramText.from_text(document.text, _name(uri))
+        program = ProgramText.from_text(document.text, name_of(uri))
         if program.endless_line() is not None:
             return None
         return holds_before(
@@ -301,37 +307,11 @@ class _Editor:
         )
 
     def _publish(self, uri: str, document: Document, found: list[Finding]) -> None:
-        if self._document(uri) is document:
+        if self._texts.document(uri) is document:
             shown = [_diagnostic(each, document) for each in found]
             self._server.text_document_publish_diagnostics(
                 lsp.PublishDiagnosticsParams(uri, shown, document.version)
             )
-
-    def _document(self, uri: str) -> Document:
-        return self._documents.get(uri, _NOTHING)
-
-    def _read(self, uri: str) -> tuple[Document, Kind, Dialect | None]:
-        """Return a text, what it is, and the dialect of a program; None for a language that nobody reads here."""
-        document, name = self._document(uri), _name(uri)
-        # Nobody writes such lines: they are looked at by the check alone.
-        if any(len(line) > MOST_LINE for line in document.lines):
-            return Document(""), Kind.UNKNOWN, None
-        kind = kind_of(name, document.text)
-        if kind is not Kind.PROGRAM:
-            return document, kind, None
-        chosen = choose_dialect(ProgramText.from_text(document.text, name), self._dialect)
-        return document, kind, None if chosen.problem else chosen.dialect
-
-
-@dataclass(frozen=True, slots=True)
-class _Named:
-    document: Document
-    names: list[Name]
-    language: str
-
-    def at(self, position: lsp.Position) -> Name | None:
-        """Return the name at a position."""
-        return name_at(self.names, *_place(self.document, position))
 
 
 def editor_server(machine: MachineConfig | None, dialect: Dialect | None) -> EditorServer:
@@ -344,7 +324,11 @@ def editor_server(machine: MachineConfig | None, dialect: Dialect | None) -> Edi
         (lsp.TEXT_DOCUMENT_DID_SAVE, editor.saved, None),
         (lsp.TEXT_DOCUMENT_DID_CLOSE, editor.closed, None),
         (lsp.TEXT_DOCUMENT_HOVER, editor.hover, None),
-        (lsp.TEXT_DOCUMENT_COMPLETION, editor.completion, lsp.CompletionOptions(["G", "M", "#", "[", "="])),
+        (
+            lsp.TEXT_DOCUMENT_COMPLETION,
+            editor.completion,
+            lsp.CompletionOptions(["G", "M", "#", "<", "[", "="]),
+        ),
         (lsp.TEXT_DOCUMENT_DOCUMENT_SYMBOL, editor.symbols, None),
         (lsp.TEXT_DOCUMENT_DEFINITION, editor.definition, None),
         (lsp.TEXT_DOCUMENT_REFERENCES, editor.references, None),
@@ -354,11 +338,6 @@ def editor_server(machine: MachineConfig | None, dialect: Dialect | None) -> Edi
     ):
         server.feature(method, options)(partial(answer))  # a feature carries attributes, which methods cannot
     return server
-
-
-def _name(uri: str) -> str:
-    """Return the path of a document; of one that has not been saved yet what its address says."""
-    return (to_fs_path(uri) if uri.startswith("file:") else None) or urlsplit(uri).path or uri
 
 
 def _root(name: str) -> Path:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from typing import NamedTuple
 
@@ -41,8 +41,8 @@ class Lexicon:
     """The kinds of tokens of a language, each with its pattern, in the order in which they are tried.
 
     `skip` matches what may stand between tokens. Kinds in `folded` are compared in capitals. A pattern has no
-    groups that capture, and matches at least one character. `unfinished` says what a character means that begins
-    no token: what is wrong, and what to do.
+    groups that capture, and matches at least one character. `short` are the words that others stand for. `unfinished`
+    says what a character means that begins no token: what is wrong, and what to do.
     """
 
     def __init__(
@@ -51,18 +51,20 @@ class Lexicon:
         *,
         skip: str = r"[ \t]*",
         folded: Sequence[str] = (),
+        short: Mapping[str, str] | None = None,
         unfinished: dict[str, tuple[str, str]] | None = None,
     ) -> None:
         self._kinds = (("", False), *((kind, kind in folded) for kind, _ in kinds))
         self._pattern = re.compile(f"(?:{skip})(?:{'|'.join(f'({pattern})' for _, pattern in kinds)})")
         self._row_pattern = re.compile(f"{self._pattern.pattern}|(?:{skip})[^ \\t]", re.DOTALL)
         self._skip = re.compile(skip)
+        self._short = short or {}
         self._unfinished = unfinished or {}
 
     def row(self, text: str, at: int, end: int) -> list[Token]:
         """Return the tokens from `at` on as far as they follow each other; the last is END if nothing else is left."""
         tokens: list[Token] = []
-        kinds, new, put = self._kinds, tuple.__new__, tokens.append
+        kinds, short, new, put = self._kinds, self._short, tuple.__new__, tokens.append
         for found in self._row_pattern.finditer(text, at, end):
             index = found.lastindex
             if index is None:  # no token begins here
@@ -70,6 +72,7 @@ class Lexicon:
             kind, folded = kinds[index]
             written = found[index]
             word = written.upper() if folded else written
+            word = short.get(word, word) if short else word
             put(new(Token, (kind, word, written, found.end() - len(written))))
         put(new(Token, (END, "", "", end)))
         return tokens
@@ -91,7 +94,8 @@ class Lexicon:
         index: int = found.lastindex  # type: ignore[assignment]
         kind, folded = self._kinds[index]
         written = found[index]
-        return Token(kind, written.upper() if folded else written, written, found.start(index)), found.end()
+        word = written.upper() if folded else written
+        return Token(kind, self._short.get(word, word), written, found.start(index)), found.end()
 
 
 class Tokens:

@@ -11,6 +11,7 @@ from polycnc.nc.channel._channel_snapshot import CHANNEL_CLASSES, ChannelSnapsho
 from polycnc.nc.channel._languages import language_for
 from polycnc.nc.channel._line_check import LineCheck
 from polycnc.nc.channel._options import ChannelOptions
+from polycnc.nc.channel._preparation import NAMED_END
 from polycnc.nc.channel._sub_programs import Library, SubPrograms
 from polycnc.nc.dialect._dialect import DEFAULT_DIALECT, DIALECTS, Dialect, load_dialect
 from polycnc.nc.dialect._guess import ChosenDialect, choose_dialect, dialect_for
@@ -54,6 +55,7 @@ __all__ = [
     "DEFAULT_DIALECT",
     "DIALECTS",
     "LINE_MASK",
+    "NAMED_END",
     "ROOM_BYTES",
     "TIPS",
     "Action",

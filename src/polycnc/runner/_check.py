@@ -13,7 +13,7 @@ from polycnc.nc import Dialect, Language, ProgramText
 from polycnc.runner._execution import Progress, run_to_end
 from polycnc.runner._program_control import control_for, run_under
 from polycnc.runner._rehearsal import rehearsed
-from polycnc.runner._remarks import MachiningWatch, Remark, empty_remark
+from polycnc.runner._remarks import MachiningWatch, Remark, empty_remark, unread_remarks
 from polycnc.runner._run import run_program
 from polycnc.runner._settings import RunSettings, program_text
 
@@ -166,9 +166,10 @@ def _inspected(
     run_to_end(execution, every_cycle=False, progress=progress)
     if (empty := empty_remark(text)) is not None:
         return CheckReport(execution.channel.errors, [empty])
+    remarks = [*unread_remarks(execution.channel, text), *watch.remarks]
     if settings.stock is None or execution.channel.errors:
-        return CheckReport(execution.channel.errors, watch.remarks)
-    return CheckReport([], [*watch.remarks, *_collisions(text, settings)])
+        return CheckReport(execution.channel.errors, remarks)
+    return CheckReport([], [*remarks, *_collisions(text, settings)])
 
 
 def _collisions(text: ProgramText, settings: RunSettings) -> list[Remark]:

@@ -14,7 +14,7 @@ import numpy.typing as npt
 from polycnc.errors import SourcePosition
 from polycnc.kernel import RAPID, WAIT, WAIT_EVENT
 from polycnc.machine import MachineConfig
-from polycnc.nc import Channel, Dialect, MAction, ProgramText, line_of
+from polycnc.nc import NAMED_END, Channel, Dialect, MAction, ProgramText, line_of
 
 Floats = npt.NDArray[np.float64]
 _TURNS = {
@@ -206,6 +206,12 @@ def empty_remark(program: ProgramText) -> Remark | None:
     if _SOMETHING.search(program.content):  # which copies nothing: programs are long
         return None
     return Remark("empty", "the program is empty", SourcePosition(program.name, 1, 1, ""))
+
+
+def unread_remarks(channel: Channel, program: ProgramText) -> list[Remark]:
+    """Return what to say of a program that has been prepared, and of which a part was not read."""
+    lines = [each.line for each in channel.messages.all() if each.text == NAMED_END]
+    return [Remark("unread", NAMED_END, program.line_position(line)) for line in lines]
 
 
 def times_remark(config: MachineConfig, dialect: Dialect, words: Mapping[str, int]) -> str:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections import Counter
 from contextlib import suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from polycnc.cnc import ProgramRun, RunOptions
@@ -128,9 +128,10 @@ def holds_before(
     control = control_for(dialect, text, machine, Surroundings(root))
     if control is not None and control.has_statements(text):
         return None
-    run = run_under(
-        control, machine, text, dialect, RunOptions(stands_at_stops=False, collect_errors=True), root=root
-    )
+    options = RunOptions(stands_at_stops=False, collect_errors=True)
+    if line > options.ordinary_blocks:
+        options = replace(options, ordinary_blocks=0.0)  # compiled code is worth loading, or has been
+    run = run_under(control, machine, text, dialect, options, root=root)
     try:
         run.selection.search(line=line, calculate=True)
     except PolycncError:

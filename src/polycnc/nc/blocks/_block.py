@@ -83,7 +83,8 @@ class BlockContext:
     `exact_stop` tells that it comes to rest at its end, `shows` which motion its record shows.
     `speed` is the S word where it is a spindle speed, `holds` a move that waits for its corner. `change` starts or ends
     radius compensation when all else is right; `compensated` tells that moves went through it. A block of a contour
-    that is only `measured` leaves no marks. `passed` are soft limits at which its moves stop.
+    that is only `measured` leaves no marks. `passed` are soft limits at which its moves stop, `unfed` is where a move
+    ends that has no feed.
     """
 
     rules: ChannelRules
@@ -105,6 +106,7 @@ class BlockContext:
     change: Callable[[], None] | None = None
     compensated: bool = False
     passed: list[ProgramError] = field(default_factory=list)
+    unfed: Point | None = None
     exact_stop: bool = False
     shows: int = MOTION_NONE
 

@@ -25,7 +25,17 @@ from polycnc.nc.blocks._corner_blocks import refuse_open
 from polycnc.nc.blocks._handlers import carries_out
 from polycnc.nc.blocks._moves import Arc, Line, QueueItem, Spline
 from polycnc.nc.blocks._outcomes import NEXT
-from polycnc.nc.blocks._turning import Piece, Roughing, Step, Turning, TurningError, exchanged, repeat, rough
+from polycnc.nc.blocks._turning import (
+    SAME_MM,
+    Piece,
+    Roughing,
+    Step,
+    Turning,
+    TurningError,
+    exchanged,
+    repeat,
+    rough,
+)
 from polycnc.nc.blocks._turning_pockets import rough_pockets
 from polycnc.nc.blocks._word_checks import refuse_unused
 from polycnc.nc.blocks._words import GWord, whole_number
@@ -158,6 +168,8 @@ def contour_cycle(
     is_diameter = float(modal.scale[x]) < 0.75 * length_scale(modal)
     allowance = u * (0.5 if is_diameter else 1.0), w
     pieces = _pieces(block, moves)
+    if g.action in _DEPTHS and _leads_back(pieces, moves, along=int(g.action is Action.TURN_ROUGH)):
+        pieces.pop()
     if not pieces:
         raise block.problem(f"G{g.code}: the contour moves nothing", "Check P and Q.", g.word)
     first_rapid = bool(getattr(moves[0], "rapid", False))
@@ -196,6 +208,12 @@ def _pieces(block: BlockContext, moves: Sequence[Line | Arc]) -> list[Piece]:
         elif start != end:
             pieces.append(Piece(start, end))
     return pieces
+
+
+def _leads_back(pieces: list[Piece], moves: Sequence[Line | Arc], *, along: int) -> bool:
+    """Tell whether a contour ends with a rapid back to where it began along an axis: nothing is cut there."""
+    back = len(pieces) > 2 and abs(pieces[-1].end[along] - pieces[0].end[along]) <= SAME_MM
+    return back and bool(getattr(moves[-1], "rapid", False))
 
 
 def _or(value: float | None, other: float) -> float:

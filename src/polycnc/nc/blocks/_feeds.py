@@ -35,6 +35,7 @@ def feed(block: BlockContext, start: Point, end: Point, straight: bool = True) -
         return Feed(duration_s=SECONDS_PER_MINUTE / block.after.feed_word)
     value = float(modal.real[FEED])
     if value <= 0.0:
+        block.unfed = end
         raise block.problem(
             "a feed move without a feed", "Program F in this or an earlier block.", block.move_word
         )

@@ -27,14 +27,16 @@ from polycnc.nc.blocks._travel import up_to_limits
 from polycnc.nc.dialect._dialect import Dialect
 from polycnc.nc.modal._actions import Family
 from polycnc.nc.modal._frame import UNTURNED
-from polycnc.nc.modal._modal import FEED_MODE, FEED_PER_MINUTE, MOTION, ORDINARY
+from polycnc.nc.modal._modal import FEED, FEED_MODE, FEED_NUMBER, FEED_PER_MINUTE, MOTION, ORDINARY
 from polycnc.nc.modal._modal_snapshot import ModalSnapshot
 from polycnc.nc.records._block_records import AGAIN
+from polycnc.nc.text._place import Place
 from polycnc.nc.text._program import ProgramText
 from polycnc.nc.text._scan import STATEMENT
 from polycnc.nc.text._scan_plain import Block
 
 F = TypeVar("F", bound=Callable[..., object])
+_ASSUMED_FEED_MM_MIN = 1000.0
 
 
 class Interpreter:
@@ -65,6 +67,7 @@ class Interpreter:
         self._last_tag = 0
         self._text = ProgramText.from_text("")
         self._held_text = self._text  # of the move that radius compensation holds back
+        self._refused: BlockContext | None = None
 
     def execute(self, text: ProgramText, block: Block) -> Outcome:
         """Execute one block of `text`.
@@ -81,6 +84,7 @@ class Interpreter:
         if self._after.compensation.active:
             self._after.compensation = self._after.compensation.copy()
         context = BlockContext(self._rules, text, block, self.state, self._after, self.dialect, block.line)
+        self._refused = context  # until it has been carried out
         try:
             self._run(context)
         except CompensationError as error:
@@ -91,6 +95,7 @@ class Interpreter:
         if context.passed:
             self._stop_at_limit(context)
         self._commit(context)
+        self._refused = None
         if context.goes_on is not None and context.outcome is NEXT:
             return Outcome(Continuation.GO_ON, place=context.goes_on)
         return context.outcome
@@ -293,6 +298,23 @@ class Interpreter:
         """Note a block that does nothing on the path, to be stepped to."""
         if self._queue.marks is not None:
             self._queue.mark(self._next_tag(line, self.state.snapshot()))
+
+    def past_refused(self) -> Place | None:
+        """Go on after the block that was refused, to look for errors that do not follow from it.
+
+        Its feed counts, and a feed that is missing is missed once. Returns where the program goes on after its contour.
+        """
+        refused, self._refused = self._refused, None
+        if refused is None:
+            return None
+        modal, after = self.state.modal, refused.after.modal
+        if refused.unfed is not None:
+            modal.real[FEED] = modal.real[FEED_NUMBER] = _ASSUMED_FEED_MM_MIN
+            if not self.state.compensation.active:
+                modal.position[:] = refused.unfed
+        elif modal.whole[FEED_MODE] == after.whole[FEED_MODE]:
+            modal.real[FEED], modal.real[FEED_NUMBER] = after.real[FEED], after.real[FEED_NUMBER]
+        return refused.goes_on
 
     def leave_compensation(self) -> None:
         """Go on without radius compensation, to look for errors after a path that cannot be followed."""

@@ -14,11 +14,16 @@ _LANGUAGES = (
 )
 
 
+class Unread(ProgramError):  # noqa: N818  it is one like any
+    """A statement that the language of the dialect has left, as it refused the program."""
+
+
 class NotBlocks:
     """Say what is wrong with lines that are no words; statements of a language make one error a program."""
 
     def __init__(self, dialect: Dialect) -> None:
         self._name = dialect.name
+        self._has_language = dialect.language != "none"
         self._rules = dialect.text_rules()
         self._known: tuple[ProgramText, int, int] | None = None  # a program, its first statement, how many
 
@@ -30,6 +35,9 @@ class NotBlocks:
         if wrong is not None:
             position = text.position(block.offset + wrong.place)
             return ProgramError(wrong.what, position=position, hint=wrong.hint)
+        if self._has_language:
+            what = f"dialect '{self._name}' reads no statement like this"
+            return Unread(what, position=text.line_position(block.line), hint="Check the line.")
         if self._known is None or self._known[0] is not text:
             self._known = (text, *statements(text, self._rules))
         _, first, count = self._known

@@ -6,6 +6,7 @@ from collections.abc import Iterable
 
 from polycnc.errors import ProgramError
 from polycnc.nc.blocks._messages import Messages
+from polycnc.nc.blocks._not_blocks import Unread
 
 _MOST_ERRORS = 1000
 
@@ -24,7 +25,9 @@ class Errors:
         self._known: set[str] = set()
 
     def note(self, error: ProgramError) -> None:
-        """Note an error once, however often its block is repeated."""
+        """Note an error once, however often its block is repeated; none that follows from another one."""
+        if isinstance(error, Unread) and self.all:
+            return
         text = str(error)
         if text not in self._known:
             self._known.add(text)

@@ -108,6 +108,10 @@ class Turns:
         self._looks = set(saved.looks)
 
 
+NAMED_END = "a line that begins with % ends the program: what follows it is not read"
+"""The message on a program whose % has words after it, as if it began a remark."""
+
+
 class Preparation:
     """Execute the blocks that `reader` and the languages of `calls` give, and go on where they say.
 
@@ -192,6 +196,8 @@ class Preparation:
         try:
             block = reader.take(self._calls.running)
             if block is EndSource.RETURN:
+                if self._calls.depth == 0 and reader.at_named_end:
+                    self._interpreter.messages.note(NAMED_END, reader.line)
                 self._leave()
             elif isinstance(block, Block):
                 self._execute(reader.text, block)
@@ -199,6 +205,7 @@ class Preparation:
             self._note(error)
             if error.position is not None and error.position.line != reader.line:
                 self._interpreter.leave_compensation()  # the move before is wrong: not every one after it
+            self._go_past()
 
     def _from_source(self) -> bool:
         """Do what the source of the present program gives; False if that is nothing for now."""
@@ -215,6 +222,7 @@ class Preparation:
                 self.turns.look(self._reader.text.name, item.line)
         except ProgramError as error:
             self._note(error)
+            self._go_past()
         return True
 
     def _source_item(self, item: SourceItem | None) -> None:
@@ -284,6 +292,12 @@ class Preparation:
                 hint="Write the contour in plain words.",
             )
         self._reader.jump(place, self._reader.end)
+
+    def _go_past(self) -> None:
+        """Go on after a block that was refused, where errors are collected."""
+        place = self._interpreter.past_refused() if self._errors.collects else None
+        if place is not None and place.offset <= self._reader.end:
+            self._reader.jump(place, self._reader.end)
 
     def _return(self) -> None:
         """Return to the block after the call."""

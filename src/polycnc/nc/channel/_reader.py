@@ -66,6 +66,13 @@ class Reader:
             return self.place
         return Place(self.text, int(self._words.offset[self._next]), int(self._words.line[self._next]))
 
+    @property
+    def at_named_end(self) -> bool:
+        """Whether the last block is a % with words after it, as if it began a remark."""
+        begin = int(self._words.offset[self._next - 1])
+        line = self.text.content[begin : self.text.line_end(begin)].strip()
+        return line.startswith(b"%") and line[1:].lstrip()[:1].isalpha()
+
     def more(self) -> bool:
         """Scan the next piece; False at the end."""
         if self.place.offset >= self.end:

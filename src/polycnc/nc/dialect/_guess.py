@@ -72,9 +72,11 @@ _SIGNS = (
     _sign("grbl", _LINE + rb"\$(?:[0-9]+=|[HXCGIN#$]|J=)"),
     _sign("fanuc", rb"(?<![A-Z])G[ \t]*6[56](?:\.1)?[ \t]*(?:[A-Z][-+0-9. \t]*)*P[ \t]*[0-9]"),
     _sign("fanuc", _NUMBER + rb"(?:/[0-9]?[ \t]*)?(?:" + _MACRO + rb")"),
+    _sign("fanuc", rb"(?<![A-Z])G[ \t]*(?:16|6[89]|5[01]\.1|54\.1)(?![0-9.])"),
+    _sign("fanuc", rb"(?:(?<=\A\n)|(?<=\A\n%\n)|(?<=\A\n%\r\n)):[ \t]*[0-9]{1,8}(?=[ \t]*(?:[\r\n(;]|\Z))"),
     _sign("fanuc", _LINE + rb"O[ \t]*[0-9]{1,8}(?=[ \t]*(?:[\r\n(;]|\Z))"),
 )
-_NUMBERED = _SIGNS[-1]
+_CODES, _, _NUMBERED = _SIGNS[-3:]
 _BRACKETS = re.compile(rb"\([^)\r\n]*\)")
 _REMARK = re.compile(rb";[ \t]*[A-Za-z]{3,}")
 """A remark after a semicolon, which ends a block on controls whose programs have nothing but a number."""
@@ -120,10 +122,10 @@ def choose_dialect(text: ProgramText, explicit: str | Path | Dialect | None = No
             return ChosenDialect(default, problem=_unreadable(text, sign, found))
     for sign in _SIGNS:
         if found := sign.pattern.search(words):
-            remarks = sign is _NUMBERED and _REMARK.search(_BRACKETS.sub(b"", with_comments))
+            remarks = sign in (_CODES, _NUMBERED) and _REMARK.search(_BRACKETS.sub(b"", with_comments))
             turret = _TURRET.search(words) and not _MILL.search(words)
             lathe = _TURNING.get(sign.name) if turret else None
-            if remarks and lathe is None:
+            if remarks and lathe is None and sign is _NUMBERED:
                 continue
             dialect = load_dialect(lathe or sign.name)
             if remarks:

@@ -16,15 +16,23 @@ _WORDS = (
     "WHILE", "GOTO", "THEN", "IF", "DO", "END", "DPRNT", "BPRNT", "POPEN", "PCLOS", "SETVN", "POW", "ADP", "PRM",
     *COMPARISONS, "AND", "XOR", "OR", "MOD", *sorted(FUNCTIONS, key=len, reverse=True),
 )  # fmt: skip
+_SHORT = {"WH": "WHILE", "EN": "END", "TH": "THEN", "EX": "EXP"} | {
+    name[:2]: name for name in FUNCTIONS if name not in ("SQR", "RND", "LN", "EXP")
+}
+# A short word is one where it can be nothing else. GO is none: in GO1 a zero is meant.
+_SHORT_WORDS = rf"WH(?={_BLANKS}*\[)|EN(?={_BLANKS}*[1-3])|TH(?={_BLANKS}*[#G])|" + "|".join(
+    rf"{short}(?={_BLANKS}*\[)" for short, name in _SHORT.items() if name in FUNCTIONS
+)
 LEXICON = Lexicon(
     (
         ("number", r"[0-9]+\.?[0-9]*|\.[0-9]+"),
-        ("word", "(?i:" + "|".join(_WORDS) + ")"),
+        ("word", "(?i:" + "|".join((*_WORDS, _SHORT_WORDS)) + ")"),
         ("letter", "[A-Za-z]"),
         ("mark", r"[\[\]#=+\-*/,]"),
     ),
     skip=rf"(?:{_BLANKS}|\([^)\r\n]*\))*",
     folded=("word", "letter"),
+    short=_SHORT,
     unfinished={"(": ("the comment is not closed", "Write ')' at its end, on the same line.")},
 )
 _OPERATORS = Operators(

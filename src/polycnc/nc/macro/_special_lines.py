@@ -11,7 +11,7 @@ from polycnc.nc.macro._plain_lines import OpenLines
 from polycnc.units import whole
 
 _B = r"[ \t]*"
-_ANYWHERE = r"[#\[\]=]|(?<![A-Z])(?:GOTO|DPRNT|BPRNT|POPEN|PCLOS|SETVN|(?:DO|END)[ \t]*[0-9])"
+_ANYWHERE = r"[#\[\]=]|(?<![A-Z])(?:GOTO|DPRNT|BPRNT|POPEN|PCLOS|SETVN|(?:DO|END?)[ \t]*[0-9])"
 _MACRO_CODES = rf"G{_B}0*6[567](?![0-9])|M{_B}0*9[67](?![0-9.])"
 _RETURNS = ("M99", "M099", "M0099", "M 99", "M 099", "M\t99")
 _SUB_CALL = rf"M{_B}0*98(?![0-9.])"
@@ -59,8 +59,8 @@ class Special:
 def special(calls: MacroCalls, *, restarts: bool = False, returns: bool = False) -> Special:
     """Return what makes a line special; with `returns` callers are to be returned into."""
     codes = [_MACRO_CODES]
-    needles = ["#", "[", "=", "O", "D", "G6", "G06", "G006", "G 6", "G\t6", *_RETURNS, "M96", "M096", "M 96"]
-    needles += ["M97", "M097", "M 97"]
+    needles = ["#", "[", "=", "O", "D", "EN", "G6", "G06", "G006", "G 6", "G\t6", *_RETURNS]
+    needles += ["M96", "M096", "M 96", "M97", "M097", "M 97"]
     for code in calls.g:
         codes.append(rf"G{_B}0*{re.escape(f'{code:g}')}(?![0-9.])")
         needles += _written("G", code)

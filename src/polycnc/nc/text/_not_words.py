@@ -24,6 +24,7 @@ _THOUSANDS = re.compile(rf"[A-Za-z]{_BLANKS}[+-]?[0-9]+(?:,[0-9]+)+(?:[.,][0-9]*
 _BETWEEN_BLOCKS = re.compile(rf",{_BLANKS}(?P<word>[A-Za-z])")
 _COMMA = re.compile(",")
 _HASH_REMARK = re.compile(rf"{_BLANKS}#(?={_BLANKS}(?:[A-Za-z]{{2}}|[0-9]+[A-Za-z]|#|\Z))")
+_CHECK_SUM = re.compile(rf"(?<=[0-9. \t])\*[0-9]+(?={_BLANKS}\Z)")
 _LETTERS = re.compile(r"[A-Za-z]{2,}")
 
 
@@ -42,6 +43,12 @@ def syntax_hint(line: str, rules: TextRules) -> SyntaxHint | None:
     `line` is one character a byte. A comma in a number and letters without a number are slips.
     """
     code = _without_comments(line, rules)
+    if (check_sum := _CHECK_SUM.search(code)) and not _MARKS.search(code[: check_sum.start()]):
+        return SyntaxHint(
+            check_sum.start(),
+            f"'{check_sum[0]}' is no word",
+            "It is a check sum that senders add: remove it.",
+        )
     if hash_mark := _HASH_REMARK.match(code):
         return SyntaxHint(hash_mark.end() - 1, "# begins no remark", "Write remarks in brackets: (remark).")
     if _MARKS.search(code) or _KEYWORDS.search(code):

@@ -327,7 +327,7 @@ def _scan_block(
             flags |= COMMENT
             break
         elif kind == ENDS and _is_last(data, position + 1, rules):
-            break
+            position += 1
         elif kind == SLASH and skip_level == 0 and _is_opening(columns.letter, first, words):
             position, skip_level = _scan_skip_mark(data, position)
         elif kind == COLON and words == first and not flags & LABEL:
@@ -495,10 +495,18 @@ def _is_word_end(data: npt.NDArray[np.uint8], position: int, rules: ScanRules) -
 
 @compiled
 def _is_last(data: npt.NDArray[np.uint8], position: int, rules: ScanRules) -> bool:
-    """Tell whether nothing but blanks stands from here to the end of the line."""
-    while position < len(data) and rules.classes[data[position]] == BLANK:
+    """Tell whether nothing but blanks and comments stands from here to the end of the line."""
+    in_comment = False
+    while position < len(data) and rules.classes[data[position]] != NEWLINE:
+        kind = rules.classes[data[position]]
+        if in_comment:
+            in_comment = data[position] != _CLOSE
+        elif kind == OPEN:
+            in_comment = True
+        elif kind != BLANK:
+            return False
         position += 1
-    return bool(position == len(data) or rules.classes[data[position]] == NEWLINE)
+    return True
 
 
 @compiled

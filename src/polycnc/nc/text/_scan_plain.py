@@ -22,6 +22,7 @@ _NUMBER = rf"([+-]?){_B}([0-9]++\.?[0-9]*+|\.[0-9]++)"
 _LETTER = "([A-Za-z])"
 
 _BLANKS = re.compile(_B)
+_REMARKS = re.compile(rf"{_B}(?:\([^)]*+\)?{_B})*+")
 _WORD = re.compile(_LETTER + "()" + _B + _NUMBER)  # letter, index, sign, digits
 # The same with blanks among digits and point.
 _WIDE_NUMBER = rf"([+-]?){_B}((?:[0-9]{_B})+(?:\.(?:{_B}[0-9])*)?|\.(?:{_B}[0-9])+)"
@@ -183,8 +184,8 @@ class _LineReader:
         elif char == ";" and self.rules.semicolon_comments:
             self._keep_comment(self.line[self.place + 1 :])
             self.place = len(self.line)
-        elif char == ";" and self.rules.semicolon_ends and _BLANKS.fullmatch(self.line, self.place + 1):
-            self.place = len(self.line)
+        elif char == ";" and self.rules.semicolon_ends and self._ends_here():
+            self.place += 1
         elif char == "/" and self.skip_level == 0 and self._may_skip():
             match = _matched(_SKIP, self.line, self.place)
             self.skip_level = whole(match["level"] or "1")
@@ -251,6 +252,11 @@ class _LineReader:
         self.flags |= COMMENT
         self.comments.append(_utf8(comment).strip())
 
+    def _ends_here(self) -> bool:
+        """Tell whether nothing but comments follows the present character."""
+        pattern = _REMARKS if self.rules.parenthesis_comments else _BLANKS
+        return pattern.fullmatch(self.line, self.place + 1) is not None
+
     def _may_skip(self) -> bool:
         return not self.words or (len(self.words) == 1 and self.words[0].letter == "N")
 
@@ -275,7 +281,13 @@ class _LineReader:
         if char in "/:%":
             return self._error(f"'{char}' belongs at the beginning of a block", _REMARK_HINT)
         shown = char if char.isascii() and char.isprintable() else f"byte 0x{ord(char):02X}"
-        hint = _SENDER_HINT if char in "$?" and self.line[: self.place].strip() == "" else _REMARK_HINT
+        hint = _REMARK_HINT
+        if char in "$?" and self.line[: self.place].strip() == "":
+            hint = _SENDER_HINT
+        elif char == ")" and self.rules.parenthesis_comments:
+            hint = "A comment ends at its first ')': write no brackets in it."
+        elif char == ";" and self.rules.semicolon_ends:
+            hint = "It ends a block: write what follows into a line of its own."
         return self._error(f"'{shown}' is not allowed in a block", hint)
 
     def _error(self, what: str, hint: str) -> ProgramError:
