@@ -283,7 +283,7 @@ class _BlockPart:
         self.stack = (*(call.program for call in block.stack), block.program)
         self.feed = Feed(modal.feed)
         self.offsets = tuple(
-            WorkOffset(name, FrozenDict(of.offsets.get(name, {}))) for name in modal.work if name
+            WorkOffset(name, FrozenDict(of.offsets.by_name.get(name, {}))) for name in modal.work if name
         )
         word = modal.g.get(Group.LENGTH_COMPENSATION, "").removeprefix("G")
         sign = _SIGNS.get(of.dialect.g.get(word, ""))

@@ -120,19 +120,20 @@ class OffsetTable(Mapping[str, Mapping[str, float]]):
         self._area = store.area(_OFFSETS, dict)
         self._axes = config.axis_names
         self.revision = 0
-        self._offsets = {name: dict(values) for name, values in config.offsets.items()}
+        self.by_name = {name: dict(values) for name, values in config.offsets.items()}
+        """The offsets as they are held, to be read; `set` changes them."""
         for name, row in self._area.load().items():
-            self._offsets[str(name)] = {axis: value for axis, value in row.items() if axis in self._axes}
+            self.by_name[str(name)] = {axis: value for axis, value in row.items() if axis in self._axes}
 
     def __getitem__(self, name: str) -> Mapping[str, float]:
         """Return the offset per axis, axes without one left out; KeyError if there is none."""
-        return MappingProxyType(self._offsets[name])
+        return MappingProxyType(self.by_name[name])
 
     def __iter__(self) -> Iterator[str]:
-        return iter(sorted(self._offsets))
+        return iter(sorted(self.by_name))
 
     def __len__(self) -> int:
-        return len(self._offsets)
+        return len(self.by_name)
 
     def set(self, name: str, values: Mapping[str, float], *, add: bool = False) -> None:
         """Set, or with `add` shift, an offset of some axes (mm or degree); the other axes stay.
@@ -145,7 +146,7 @@ class OffsetTable(Mapping[str, Mapping[str, float]]):
             raise ControlError(
                 Refusal.DATA, f"'{name}' cannot name a work offset", hint="Write it like G54 or G54.P3."
             )
-        row = dict(self._offsets.get(name, {}))
+        row = dict(self.by_name.get(name, {}))
         for axis, value in values.items():
             if axis not in self._axes:
                 raise ControlError(
@@ -161,7 +162,7 @@ class OffsetTable(Mapping[str, Mapping[str, float]]):
                 )
             row[axis] = float(total)
         self._area[name] = row
-        self._offsets[name] = row
+        self.by_name[name] = row
         self.revision += 1
 
 
