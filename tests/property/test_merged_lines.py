@@ -281,9 +281,8 @@ def test_small_arcs_of_a_program_join_the_lines_beside_them(ordinary_blocks: flo
         assert sorted(set(kinds) & {LINE, ARC}) == found
         if not plane:
             assert np.count_nonzero(kinds == LINE) == 1
-            assert (
-                len(channel.writer.marks) == 16
-            )  # the first block, and all but the last, which have joined that
+            assert channel.writer.marks is not None
+            assert len(channel.writer.marks) == 16  # the first block, and all but the last have joined it
         else:
             assert np.count_nonzero(kinds == LINE) >= 8
 

@@ -167,7 +167,9 @@ def test_an_edit_changes_lines_and_keeps_the_other_bytes(memory: ProgramMemory) 
     memory.delete("P")
 
 
-def test_a_program_that_starts_to_run_can_no_longer_be_edited(memory: ProgramMemory, running: set[str]) -> None:
+def test_a_program_that_starts_to_run_can_no_longer_be_edited(
+    memory: ProgramMemory, running: set[str]
+) -> None:
     memory.create("P", PART)
     with ProgramEdit(memory, "P") as edit:
         running.add("P")
