@@ -476,6 +476,33 @@ def test_four_tasks_are_started_stopped_and_show_what_they_do(two: TwoBoards, tm
     assert [status(task)[2] for task in range(4)] == [0, 0, 0, 0]
 
 
+@pytest.mark.covers("apci.sap", "apci.file.cnc", "apci.txbf2", "apci.startcnct")
+def test_a_program_that_is_loaded_halts_the_one_in_its_task_and_waits_to_be_started(
+    two: TwoBoards, tmp_path: Path
+) -> None:
+    assert two.initialise()[0] == 0
+    board = pcap.board()
+    for task, text in ((1, "WHILE TRUE DO CI1 := CI1 + 1;"), (2, "WHILE TRUE DO CI2 := CI2 + 1;")):
+        (tmp_path / "p.cnc").write_bytes(sap.write_cnc(sap.compile_program(text, task=task)))
+        assert pcap.txbf2("p.cnc") == 0
+        pcap.startcnct(task)
+    board.advance(3)
+    (tmp_path / "p.cnc").write_bytes(sap.write_cnc(sap.compile_program("CI3 := 7;", task=1)))
+    assert pcap.txbf2("p.cnc") == 0
+    before = list(board.state.ci[1:4])
+    board.advance(3)
+    after = list(board.state.ci[1:4])
+    assert (after[0], after[1] > before[1], after[2]) == (before[0], True, 0)
+    pcap.rdcncts(1, status := pcap.CNCTS(9, 9, 9, 9, 9))
+    assert (status.running, status.errnum) == (0, 0)
+    pcap.contcnct(1)  # there is nothing to be continued
+    board.advance(3)
+    assert board.state.ci[3] == 0
+    pcap.startcnct(1)
+    board.advance(3)
+    assert board.state.ci[3] == 7
+
+
 @pytest.mark.covers("apci.sap", "apci.sap.multitasking", "apci.const.tasks")
 def test_calls_of_four_tasks_at_once_keep_apart(two: TwoBoards, tmp_path: Path) -> None:
     assert two.initialise()[0] == 0
