@@ -111,6 +111,8 @@ def usual(b: Bench, r: random.Random) -> None:
         lambda: b.MoveRelative(way, axis, fifo),
         lambda: b.MoveSuperimposed(way, axis, fifo),
         lambda: b.MoveVelocity(speed + 777, axis, fifo),
+        lambda: b.set(fifo, axis, **{r.choice(("mcsgo", "pcsgo")): 0}),
+        lambda: b.set(fifo, axis, **{r.choice(("user16b0", "user32b9", "user48b4")): way}),
         lambda: b.set(fifo, axis, pcstgvel=speed / ONE),
         lambda: b.GearFree(ratio, other, r.randint(0, 4), axis, fifo),
         lambda: b.GearInDist(ratio, other, r.randint(0, 4), r.randrange(AXES), r.randint(0, 4), pace, axis, fifo),

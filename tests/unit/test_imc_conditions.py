@@ -319,3 +319,19 @@ def test_the_limits_of_any_motion_are_for_both_systems_together(way: int) -> Non
         set_now(card, ("mcstgvel", goals[0] * way, 2), ("pcstgvel", goals[1] * way, 2))
         card.advance(1 if expected[1] == 0x4000 else 3)
         assert tuple(card.read(name, 2) for name in names) == (expected[0] * way, *expected[1:])
+
+
+@shows("mcsgo mcsvel mcsdecel mcsmoving pcsgo pcsvel pcsdecel pcsmoving")
+@pytest.mark.covers("imc.IMC_MoveSuperimposed", "imc.IMC_MoveRelative", "imc.concept.superposition")
+@pytest.mark.parametrize(("system", "other"), [("mcs", "pcs"), ("pcs", "mcs")])
+def test_a_move_of_either_system_is_stopped_alone_and_with_its_own_rate(system: str, other: str) -> None:
+    card = ready_card()
+    for each, speed, decel in ((system, 6, 0.5), (other, 4, 3)):
+        rates = {"maxvel": speed, "accel": 2, "decel": decel, "dist": -4000, "go": FLAG}
+        set_now(card, *((f"{each}{name}", value, 1) for name, value in rates.items()))
+    card.advance(10)
+    set_now(card, (f"{system}go", 0, 1))
+    assert trace(card, f"{system}vel", 12, 1) == [-5.5 + 0.5 * k for k in range(12)]
+    card.advance(1)
+    assert [card.read(f"{system}{name}", 1) for name in ("go", "moving", "vel")] == [0, 0, 0]
+    assert [card.read(f"{other}{name}", 1) for name in ("go", "moving", "vel")] == [FLAG, FLAG, -4]
