@@ -40,6 +40,10 @@ def test_an_opened_file_is_appended_to_unless_rewritten(root: Root) -> None:
     assert root.read("P5") == b"ONE\nTWO\n" + END
     root.run('1 OPENW(3,"P5")\n2 REWRITE(3)\n3 PRN#(3,"3")\n4 CLOSE(3)')
     assert root.read("P5") == b"3\n" + END
+    root.run(
+        '1 OPENW(3,"P6",1000,4)\n2 PRN#(3,"ABCD")\n3 PRN#(3,"EFGH")\n4 REWRITE(3)\n5 PRN#(3,"X")\n6 CLOSE(3)'
+    )
+    assert root.read("P6") == b"X   \n" + END
 
 
 def test_a_program_that_a_program_has_written_runs(root: Root) -> None:
