@@ -23,6 +23,8 @@ ERRORS = [
     ("INVALID_FILE_NUMBER", "1 SEEK(3,1)", "1: INVALID FILE NUMBER"),
     ("INVALID_FILE_NUMBER", "1 A%=FILESIZE(0)", "1: INVALID FILE NUMBER"),
     ("ILLEGAL_FILE_SIZE", '1 OPENW(2,"P2",129)', "1: ILLEGAL FILE SIZE"),
+    ("INVALID_FIELD_LIMIT", "1 DIM A$(1025)", "1: INVALID FIELD LIMIT"),
+    ("INVALID_FIELD_LIMIT", "1 DIM A$(0)", "1: INVALID FIELD LIMIT"),
     ("INVALID_COMPONENT_LENGTH", '1 OPENW(2,"P3",1000,0)', "1: INVALID COMPONENT LENGTH"),
     ("INVALID_COMPONENT_LENGTH", '1 OPENW(2,"P3",1000,1025)', "1: INVALID COMPONENT LENGTH"),
     ("INVALID_COMPONENT_LENGTH", RANDOM + '4 OPENR(2,"P3",11)', "4: INVALID COMPONENT LENGTH"),
@@ -72,6 +74,7 @@ AT_THE_LIMIT = [
     ("ILLEGAL_FILE_SIZE", '1 OPENW(2,"P2",130)'),
     ("INVALID_COMPONENT_LENGTH", '1 OPENW(2,"P3",1000,1)\n2 OPENW(3,"P4",1025,1024)'),
     ("INVALID_COMPONENT_LENGTH", RANDOM + '4 OPENR(2,"P3",10)'),
+    ("INVALID_FIELD_LIMIT", "1 DIM A$(1024) : DIM B$(1)"),
     ("INVALID_COMPONENT", RANDOM.replace("3 CLOSE(2)", "3 SEEK(2,1) : SEEK(2,2)")),
     (
         "INVALID_FILE_NAME",
@@ -93,6 +96,7 @@ AT_THE_LIMIT = [
 
 
 @pytest.mark.covers(*sorted({f"cpl.err.{name}" for name, _ in AT_THE_LIMIT}))
+@pytest.mark.covers("cpl.type.CHARACTER")
 @pytest.mark.parametrize(("name", "program"), AT_THE_LIMIT)
 def test_what_is_just_within_the_limit_of_an_error_is_none(tmp_path: Path, name: str, program: str) -> None:
     assert Root(tmp_path).run(f"{program}\n99 #A%=5\n").variables["#A%"] == 5

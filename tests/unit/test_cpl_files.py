@@ -40,6 +40,10 @@ def test_an_opened_file_is_appended_to_unless_rewritten(root: Root) -> None:
     assert root.read("P5") == b"ONE\nTWO\n" + END
     root.run('1 OPENW(3,"P5")\n2 REWRITE(3)\n3 PRN#(3,"3")\n4 CLOSE(3)')
     assert root.read("P5") == b"3\n" + END
+    root.run(
+        '1 OPENW(3,"P6",1000,4)\n2 PRN#(3,"ABCD")\n3 PRN#(3,"EFGH")\n4 REWRITE(3)\n5 PRN#(3,"X")\n6 CLOSE(3)'
+    )
+    assert root.read("P6") == b"X   \n" + END
 
 
 def test_a_program_that_a_program_has_written_runs(root: Root) -> None:
@@ -178,6 +182,10 @@ def test_a_file_grows_beyond_what_was_reserved(root: Root) -> None:
 def test_records_of_one_length_are_padded(root: Root) -> None:
     root.run('10 OPENW(2,"P200",1024,10)\n20 FOR I% = 1 TO 3\n30 PRN#(2,"TEST")\n40 NEXT I%\n50 CLOSE(2)')
     assert root.read("P200") == b"TEST      \n" * 3 + END
+    root.run(
+        '1 OPENW(2,"P201",1024,10)\n2 PRN#(2,"0123456789A")\n3 PRN#(2,"0123456789")\n4 PRN#(2,"")\n5 CLOSE(2)'
+    )
+    assert root.read("P201") == b"0123456789\n" * 2 + b" " * 10 + b"\n" + END
 
 
 @pytest.mark.covers("cpl.ex.3953")

@@ -70,8 +70,17 @@ def test_dsp_puts_numbers_into_formats_wherever_they_stand(tmp_path: Path) -> No
             "1: format not permitted",
             marks=pytest.mark.covers("cpl.err.FORMAT_NOT_PERMITTED"),
         ),
-        ("1 GWD(0,633,0,374)", "1: INVALID PARAMETER"),
-        ("1 GWD(5,5,0,374)", "1: INVALID PARAMETER"),
+        *(
+            pytest.param(f"1 GWD({edges})", "1: INVALID PARAMETER", marks=pytest.mark.covers("cpl.GWD"))
+            for edges in (
+                "0,633,0,374",
+                "5,5,0,374",
+                "0,632,0,375",
+                "-1,632,0,374",
+                "0,632,-1,374",
+                "0,632,7,7",
+            )
+        ),
         ("1 GMD(5)", "1: INVALID PARAMETER"),
         ("1 COL(8)", "1: INVALID PARAMETER"),
         ("1 COL(,,,4)", "1: INVALID PARAMETER"),

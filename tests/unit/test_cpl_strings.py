@@ -303,17 +303,27 @@ def test_comparing_texts() -> None:
 def test_chains_go_into_fields() -> None:
     dims = [
         f"DIM #{name}$({size})"
-        for name, size in (("C", 10), ("D", 10), ("E", 20), ("F", 5), ("G", 10), ("H", 12), ("I", 5))
+        for name, size in (
+            ("C", 10),
+            ("D", 10),
+            ("K", 10),
+            ("E", 20),
+            ("F", 5),
+            ("G", 10),
+            ("H", 12),
+            ("I", 5),
+        )
     ]
     given = ['A$="THIS "', 'B$="IS A TEST"', 'X$="ABC"', 'Y$="DEFG"']
     chains = [
         "MID$(#C$,1,6)=A$+B$", "MID$(#D$,1,10)=MID$(A$,1,1)+MID$(B$,1,2)", "#E$=A$+MID$(B$,1)", "#F$=X$+Y$",
-        "#G$=X$+A$", '#H$=X$+A$+"TEST"', '#I$="TES"+"T1"',
+        "#G$=X$+A$", '#H$=X$+A$+"TEST"', '#I$="TES"+"T1"', "MID$(#K$,1,9)=X$+A$",
     ]  # fmt: skip
     assert results(*dims, *given, *chains) == {
         "#C$": "THIS I", "#D$": "TIS", "#E$": "THIS IS A TEST", "#F$": "ABCDE", "#G$": "ABCTHIS ",
         "#H$": "ABCTHIS TEST",
         "#I$": "TEST1",
+        "#K$": "ABCTHIS ",
     }  # fmt: skip
     assert failure("DIM A$(9)", "A$=B$+C$").startswith("INVALID VARIABLE")
     assert failure("DIM A$(9)", 'A$="A"-"B"') == "texts are joined by +, not by -"

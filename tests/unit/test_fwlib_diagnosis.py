@@ -289,7 +289,7 @@ def test_the_manuals_program_prints_the_message() -> None:
 
     def printed() -> str:
         code, buf = library.cnc_rdopmsg(handle, 0, 6 + 256)
-        assert (code, buf.type) == (0, 0)
+        assert (code, buf.type, buf.char_num) == (0, 0, len(buf.data))
         return "No operator message." if buf.datano == -1 else f"{buf.datano:04d} {buf.data.decode()}"
 
     seen = [printed()]

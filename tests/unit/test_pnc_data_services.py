@@ -389,7 +389,7 @@ def test_an_auxiliary_function_waits_until_the_plc_acknowledges_it(tmp_path: Pat
 def test_a_spindle_turns_with_or_without_coolant(tmp_path: Path, words: str, value: int) -> None:
     living = six(tmp_path)
     one_each = "".join(f"N{place} {word}\n" for place, word in enumerate(words.split(), 2))
-    living.start(f"N1 S700\n{one_each}N6 G1 X1 F60\nN7 M9\nN8 X20\n", 300)
+    living.start(f"N1 S3700\n{one_each}N6 G1 X1 F60\nN7 M9\nN8 X20\n", 300)
     assert living.glance(63, -1, 2) == [value, 0]
     living.pnc.advance(2000)
     assert living.glance(63, -1, 1) == [{2: 1, 4: 3}.get(value, value)]

@@ -125,13 +125,23 @@ def test_names_of_the_axes_are_listed(two: Living) -> None:
     ]
 
 
-@pytest.mark.covers("cpl.ex.3298", "cpl.MCODS.87")
+@pytest.mark.covers("cpl.ex.3298", "cpl.MCODS.87", "cpl.MCODS.87.bit.0", "cpl.MCODS.7")
 @pytest.mark.covers("cpl.MCODS")
 def test_waiting_states_are_told_apart_by_masks(two: Living) -> None:
     two.start("N1 G1 U3 F6000\nN2 U90\n", 30, channel=2)
     two.pnc.control.set_overrides(feed=0.0, channel=1)
     two.pnc.feed_hold(channel=2)
     two.pnc.advance(200)
+    waits(two, [3, 5])  # a feed of 0, and feed hold
+    two.pnc.reset(channel=2)
+    two.pnc.control.set_overrides(feed=1.2, channel=1)
+    assert two.read(7, 2) == [12000]
+    two.start("N1 G4 F90\n", 30, channel=2)
+    waits(two, [0])
+
+
+def waits(two: Living, bits: list[int]) -> None:
+    """Make sure that the manual's program finds these reasons to wait."""
     labels = "".join(f"{90 + bit} LABEL {2**bit}: #N%=#N%*100+{bit}\n" for bit in range(14))
     found = run(
         two,
@@ -139,7 +149,7 @@ def test_waiting_states_are_told_apart_by_masks(two: Living) -> None:
         f"60 MASK%=1\n70 WHILE MASK% <= STATES% DO\n80 CASE (STATES% AND MASK%) OF\n{labels}240 ENDCASE\n"
         "250 MASK%=MASK%*2\n260 END\n270 ENDIF\nM30\n",
     )
-    assert found["#N%"] == 305  # a feed of 0, and feed hold
+    assert found["#N%"] == int("".join(f"{bit:02d}" for bit in bits))
 
 
 @pytest.mark.covers("cpl.ex.3340")
