@@ -263,10 +263,10 @@ def test_the_path_speed_goes_evenly_from_one_end_of_a_piece_to_the_other(toleran
         assert abs(last**2 - first**2) <= 2.0 * rows[k]["full_accel"] * rows[k]["length"] * (1.0 + 1e-3)
 
 
-@pytest.mark.parametrize("override", [0.0, 0.1, 1.7])
-def test_a_hold_or_an_override_in_a_piece_breaks_no_limit(override: float) -> None:
+@pytest.mark.parametrize(("override", "free"), [(0.0, True), (0.1, False), (1.7, True)])
+def test_a_hold_or_an_override_in_a_piece_breaks_no_limit(override: float, free: bool) -> None:
     for cycle in range(20, 700, 23):
-        state = queued(0.4)
+        state = queued(0.4, free=free)
         prepare(state)
         start_path(state.paths, 0)
         advance(state, cycle)

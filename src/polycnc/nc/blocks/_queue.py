@@ -215,19 +215,20 @@ class QueueWriter:
         append_line(self.seg, self.paths, self.path, self.limits, end, speed, flags, item.tag)
 
     def _put_arc(self, item: Arc) -> None:
-        where = self.seg, self.paths, self.path, self.limits, np.array(item.end)
-        circle = item.plane[0], item.plane[1], item.center[0], item.center[1]
+        seg, paths, g, limits = self.seg, self.paths, self.path, self.limits
+        end, (p, q) = np.array(item.end), item.plane[:2]
+        of = p, q, item.center[0], item.center[1], item.sweep_rad
         speed, flags = _speed(item.feed, self._arc_length(item)), STOP if item.exact_stop else 0
-        row = self.paths.row[self.path]
+        row = paths.row[g]
         if row["merge_mm"] > 0.0:
             last = int(row["tail"]) - 1
-            before = append_small_arc(*where, *circle, item.sweep_rad, speed, flags, item.tag)
+            before = append_small_arc(seg, paths, g, limits, end, *of, speed, flags, item.tag)
             if before not in (NOT_SMALL, NOT_MERGED) and self.marks is not None:
                 self.marks.append((last, before))
             if before != NOT_SMALL:
                 return
         self._close_line()
-        append_arc(*where, *circle, item.sweep_rad, speed, flags, item.tag)
+        append_arc(seg, paths, g, limits, end, *of, speed, flags, item.tag)
 
     def _put_spline(self, item: Spline) -> None:
         append_spline(
