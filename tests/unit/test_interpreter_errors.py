@@ -9,6 +9,7 @@ import pytest
 from polycnc.kernel import free_slots
 from polycnc.machine import Machine
 from polycnc.nc import DIALECTS, Channel, ProgramText, load_dialect
+from polycnc.runner import check
 from support.programs import FIVE, MILL, channel_state, listing, prepare, queue_bytes, refusal
 
 
@@ -175,10 +176,10 @@ def test_all_errors_are_collected_in_order() -> None:
     assert listing(channel) == ["line X3 F100"]
 
 
-def test_an_error_is_no_cause_of_others() -> None:
+def test_a_check_finds_no_errors_that_follow_from_others() -> None:
     def wrong(program: str, dialect: str = "din") -> list[int]:
-        channel = prepare(program, collect_errors=True, dialect=dialect)
-        return [error.position.line for error in channel.errors if error.position]
+        errors = check(ProgramText.from_text(program), None, dialect)
+        return [error.position.line for error in errors if error.position]
 
     assert wrong("G1 X1\nX5\nG3 X7 Y2 R2\n") == [1]  # the feed is missed once, and its move made
     assert wrong("G1 X1 E5 F100\nX5\nG2 X9 I2\n") == [1]  # F of a refused block counts
@@ -200,7 +201,7 @@ def test_a_contour_that_is_too_narrow_is_noted_once_and_the_rest_checked() -> No
 
 
 def test_there_is_an_end_to_collecting() -> None:
-    channel = prepare("G999\n" * 5000, collect_errors=True)
+    channel = prepare("G1 X1\n" * 5000, collect_errors=True)
     assert len(channel.errors) == 1000
     assert channel.messages.all()[-1].text == "the program was checked up to its error number 1000"
 

@@ -49,6 +49,7 @@ class RunChannels:
                 marks=self.options.stands_at_stops,
                 collect_errors=self.options.collect_errors,
                 mark_refused=self.options.mark_refused,
+                past_refused=self.options.past_refused,
                 ordinary_blocks=self.options.ordinary_blocks,
             ),
             before=before,

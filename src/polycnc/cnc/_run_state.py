@@ -42,7 +42,7 @@ class RunOptions:
     `single_block` stops at the end of every block. With `answers` the path waits at an auxiliary function only for the
     answer of `on_event`, not for the machine file's times. `rapid_f0_mm_s` is the path speed of a rapid override of 0
     (0: it stands), `dry_run_mm_s` that of a dry run. `most_feed_override` is the largest factor of the feeds. So many
-    `ordinary_blocks` are prepared before compiled code takes over.
+    `ordinary_blocks` are prepared before compiled code takes over. With `past_refused` no errors follow from another.
     """
 
     block_delete: frozenset[int] = frozenset()
@@ -56,6 +56,7 @@ class RunOptions:
     most_feed_override: float = 2.0
     collect_errors: bool = False
     mark_refused: bool = False
+    past_refused: bool = False
     ordinary_blocks: float = ChannelOptions().ordinary_blocks
 
 

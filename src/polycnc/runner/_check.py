@@ -69,7 +69,7 @@ def errors_in(
     """
     if (endless := text.endless_line()) is not None:
         return [endless]
-    options = RunOptions(stands_at_stops=False, collect_errors=True)
+    options = RunOptions(stands_at_stops=False, collect_errors=True, past_refused=True)
     run = ProgramRun(
         Machine(config), text, dialect, language=language, config=config, library=(texts or {}).get,
         options=options, on_passed=let_pass,
@@ -157,7 +157,7 @@ def _inspected(
         if errors or not rehearse:
             return CheckReport(errors, [])
         return CheckReport(*rehearsed(text, simulated.config, chosen, settings.root_of(program), progress))
-    options = RunOptions(stands_at_stops=False, collect_errors=True)
+    options = RunOptions(stands_at_stops=False, collect_errors=True, past_refused=True)
     execution = run_under(
         control, simulated, text, chosen, options, root=settings.root_of(program), on_passed=let_pass
     )

@@ -295,7 +295,7 @@ class Preparation:
 
     def _go_past(self) -> None:
         """Go on after a block that was refused, where errors are collected."""
-        place = self._interpreter.past_refused() if self._errors.collects else None
+        place = self._interpreter.past_refused() if self._options.past_refused else None
         if place is not None and place.offset <= self._reader.end:
             self._reader.jump(place, self._reader.end)
 
