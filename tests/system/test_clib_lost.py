@@ -108,7 +108,7 @@ def _changed(dice: random.Random) -> Callable[[bytes], bytes]:
 def test_answers_that_are_none_write_nothing(between: tuple[str, Between], tmp_path: Path) -> None:
     kind, middle = between
     program, dice, lost = Program(kind, loaded(kind, tmp_path)), random.Random(7), 0
-    count = share(80)
+    count = share(160)
     for _ in range(count):
         middle.spoil, middle.is_last = (lambda answer: answer), False
         assert program.open() == 0
