@@ -101,7 +101,7 @@ def test_a_groove_along_the_grid_is_right_within_the_bound_of_its_cells(angle_de
         cutting = Cutting(stock, {4: Tool(ToolKind.CHAMFER, 9.0, angle_deg=angle_deg)})
         places = np.array([(-9.0, y, -deep), (length + 9.0, y, -deep)])
         two = np.arange(2)
-        cutting.add(Rows(two + 1.0, places, two, np.full(2, 4), np.zeros(2, np.bool_), np.ones(2)))
+        cutting.add(Rows(np.arange(1.0, 3.0), places, two, np.full(2, 4), np.zeros(2, np.bool_), np.ones(2)))
         half_width = deep * slope
         off = cutting.removed_mm3 / (deep * half_width * length) - 1.0
         assert abs(off) <= (0.5 * cell / half_width) ** 2 + 1e-4
