@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from polycnc.stock._insert import Insert
+from polycnc.stock._insert import Insert, InsertKind
 from polycnc.stock._sweep import DEPTH_MM, VOLUME_MM3
 from polycnc.stock._tool import Tool
 from polycnc.stock._ways import Ways
@@ -28,8 +28,8 @@ class Engagement:
     removes in a second. `axial_mm` is the greatest depth along the axis of the tool; of a turning tool it is that
     towards the axis of the part. `radial_mm` is the mean width: width, depth and speed multiply to the rate. Where a
     tool goes down or up more steeply than 45 degrees it has its diameter as width, and no depth. `chip_mm` is the
-    greatest thickness of a chip. NaN is what there is not, or is not known: the width of a turning tool, chips without
-    the speed of the spindle or without the number of teeth.
+    greatest thickness of a chip. NaN is what there is not, or is not known: the width of a turning tool, chips
+    of a thread, and those without the speed of the spindle or the number of teeth.
     """
 
     t_s: Floats
@@ -72,7 +72,9 @@ class EngagementLog:
             length = np.linalg.norm(step, axis=1)
             chip = _chip_mm(length / duration, np.abs(ways.rows.turns[ways.ends][cut]), radial, tool)
         else:
-            radial = chip = np.full(len(volume), np.nan)
+            radial = np.full(len(volume), np.nan)
+            feed = np.linalg.norm(step, axis=1) / duration
+            chip = _turned_chip_mm(feed, np.abs(ways.rows.turns[ways.ends][cut]), step, axial, tool)
         ends = ways.ends[cut]
         self._columns.append(
             (ways.rows.t_s[ends], duration, ways.rows.block[ends], volume / duration, axial, radial, chip)
@@ -83,6 +85,18 @@ class EngagementLog:
         nothing = np.zeros(0)
         empty = (nothing, nothing, np.zeros(0, np.int64), nothing, nothing, nothing, nothing)
         return Engagement(*(np.concatenate(column) for column in zip(empty, *self._columns, strict=True)))
+
+
+def _turned_chip_mm(feed_mm_s: Floats, turns: Floats, step: Floats, depth: Floats, insert: Insert) -> Floats:
+    """Return the greatest thickness of a chip: the feed of a turn, less along the axis where the edge leans."""
+    if insert.kind is InsertKind.THREADING:
+        return np.full(len(feed_mm_s), np.nan)
+    of_turn = feed_mm_s * 60.0 / np.where(turns > _SAID_RPM, turns, np.nan)
+    flank = np.radians(np.where(step[:, 2] < 0.0, insert.left_deg, insert.right_deg))
+    if insert.nose_mm > 0.0:
+        flank = np.minimum(flank, np.arccos(np.clip(1.0 - depth / insert.nose_mm, 0.0, 1.0)))
+    along = np.abs(step[:, 2]) > np.abs(step[:, 0])
+    return np.where(along, of_turn * np.sin(flank), of_turn)
 
 
 def _chip_mm(feed_mm_s: Floats, turns: Floats, radial: Floats, tool: Tool) -> Floats:

@@ -9,7 +9,10 @@ import pytest
 
 import polycnc
 from polycnc.runner.view._load import STRETCHES, loads
-from polycnc.stock import Tool, tool_of_remark
+from polycnc.stock import Insert, InsertKind, Rows, Tool, grooving_tool, threading_tool, tool_of_remark
+from polycnc.stock._engagement import EngagementLog
+from polycnc.stock._sweep import DEPTH_MM, FIGURES, VOLUME_MM3
+from polycnc.stock._ways import WaysOfRows
 
 MILLED = """(T1 D=10. CR=0. - 3 flute flat end mill)
 (T4 drill 8 mm)
@@ -91,7 +94,8 @@ def test_a_turning_tool_has_a_depth_and_no_width() -> None:
     rate, depth, width, chip = found.machined.engagement.most
     assert rate == pytest.approx(150.0 / 60.0 * math.pi * (15.0**2 - 13.0**2), rel=0.02)
     assert depth == pytest.approx(2.0, rel=1e-3)
-    assert (width, chip) == (0.0, 0.0)
+    assert width == 0.0
+    assert chip == pytest.approx(150.0 / 800.0)
 
 
 @pytest.mark.parametrize(
@@ -109,3 +113,31 @@ def test_remarks_say_how_many_teeth(remark: str, teeth: int) -> None:
     tool = tool_of_remark(remark)
     assert isinstance(tool, Tool)
     assert tool.teeth == teeth
+
+
+@pytest.mark.parametrize(
+    ("insert", "step", "chip"),
+    [
+        (Insert(InsertKind.TURNING, 0.0, 45.0, 30.0, 16.0), (0.0, -6.0), 0.25 * math.sin(math.radians(45.0))),
+        (Insert(InsertKind.TURNING, 0.0, 45.0, 30.0, 16.0), (0.0, 6.0), 0.25 * math.sin(math.radians(30.0))),
+        (Insert(InsertKind.TURNING, 0.8, 90.0, 5.0, 16.0), (0.0, -6.0), 0.25),
+        (
+            Insert(InsertKind.TURNING, 4.0, 90.0, 5.0, 16.0),
+            (0.0, -6.0),
+            0.25 * math.sqrt(1.0 - (1.0 - 1.1 / 4.0) ** 2),
+        ),
+        (grooving_tool(3.0), (-6.0, 0.0), 0.25),
+        (threading_tool(), (0.0, -6.0), math.nan),
+    ],
+)
+def test_chips_of_turning_tools(insert: Insert, step: tuple[float, float], chip: float) -> None:
+    """0.25 mm a turn at 480 turns a minute, 1.1 mm deep."""
+    places = np.array([(20.0, 0.0, 0.0), (20.0 + step[0], 0.0, step[1])])
+    two = np.arange(2)
+    rows = Rows(np.array([0.0, 3.0]), places, two, np.full(2, 4), np.zeros(2, np.bool_), np.full(2, -480.0))
+    ways = next(WaysOfRows(0.01, {4: 100.0}).of(rows))
+    figures = np.zeros((1, FIGURES))
+    figures[0, VOLUME_MM3], figures[0, DEPTH_MM] = 50.0, 1.1
+    log = EngagementLog()
+    log.add(ways, figures, insert)
+    assert log.all().chip_mm.tolist() == [pytest.approx(chip, nan_ok=True)]
