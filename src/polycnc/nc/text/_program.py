@@ -112,7 +112,7 @@ class ProgramText:
 
     def position(self, offset: int) -> SourcePosition:
         """Return file, line and column (both 1-based, in characters) and the line of the byte at `offset`."""
-        number = int(np.searchsorted(self._line_starts, offset, side="right"))
+        number = self._lines_to(offset)
         start, end = self._bounds(offset)
         column = len(_decoded(self.content[start : min(offset, end)])) + 1
         return SourcePosition(
@@ -164,8 +164,15 @@ class ProgramText:
             return end + 2
         return min(end + 1, len(self.content))
 
+    def _lines_to(self, offset: int) -> int:
+        """Return how many lines begin at or before an offset."""
+        starts = self._line_starts
+        # A number of another type would have all of them converted, each time.
+        place = starts.dtype.type(min(offset, len(self.content)))
+        return int(np.searchsorted(starts, place, side="right"))
+
     def _bounds(self, offset: int) -> tuple[int, int]:
-        number = int(np.searchsorted(self._line_starts, offset, side="right"))
+        number = self._lines_to(offset)
         start = int(self._line_starts[number - 1])
         return start, self.line_end(start)
 
