@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import json
 import os
 import signal
+import subprocess
 import sys
 from collections.abc import Iterator
-from contextlib import suppress
+from contextlib import contextmanager
 from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
@@ -17,8 +17,8 @@ import pytest
 import polycnc
 from polycnc.errors import UsageError
 from polycnc.runner import batches
+from support.command import environment
 from support.command import polycnc as command
-from support.started import Started, started_python
 
 pytestmark = pytest.mark.skipif(
     find_spec("distributed") is None, reason="no dask.distributed: pip install 'polycnc[cluster]'"
@@ -26,22 +26,22 @@ pytestmark = pytest.mark.skipif(
 
 PROGRAM = "G0 X{0} Y2\nG1 X{1} F{2}\nG2 X{1} Y2 I7\nM30\n"
 PROGRAMS = 40
+PLAIN = {"NUMBA_DISABLE_JIT": "1"}  # the same bits, and quick to start
 
-_DASK = """
-import json, os, sys
-from distributed.cli import dask_scheduler, dask_worker
-mains = {"scheduler": dask_scheduler.main, "worker": dask_worker.main}
-for name, *words in json.loads(sys.argv[1]):
-    child = os.fork()
-    if child == 0:
-        os.dup2(os.open(os.devnull, os.O_WRONLY), 2)
-        mains[name](words, prog_name="dask " + name)
-    print(child, flush=True)
-for _ in range(3):
-    child, status = os.wait()
-    print(child, os.waitstatus_to_exitcode(status), flush=True)
-"""
-"""Processes of `dask` as by its commands, which are spared most of the imports."""
+
+@contextmanager
+def _dask(*arguments: str) -> Iterator[subprocess.Popen[bytes]]:
+    running = subprocess.Popen(
+        [sys.executable, "-m", "dask", *arguments],
+        env=environment(**PLAIN),
+        stdout=subprocess.DEVNULL,
+        stderr=subprocess.DEVNULL,
+    )
+    try:
+        yield running
+    finally:
+        running.kill()
+        running.wait()
 
 
 def _client(card: Path) -> Any:
@@ -51,45 +51,22 @@ def _client(card: Path) -> Any:
     return make(scheduler_file=str(card), timeout=60, set_as_default=False)
 
 
-class Cluster:
-    """A scheduler and two workers: its address, and the numbers of the processes."""
-
-    def __init__(self, running: Started) -> None:
-        self._running = running
-        self.scheduler, *self.workers = (int(running.stdout.readline()) for _ in range(3))
-        self.address = ""
-
-    def ended(self) -> list[int]:
-        """Return number and exit status of the next process that ends."""
-        return [int(word) for word in self._running.stdout.readline().split()]
-
-    def close(self) -> None:
-        """End what has not ended."""
-        for process in (*self.workers, self.scheduler):
-            with suppress(ProcessLookupError):
-                os.kill(process, signal.SIGKILL)
-
-
 @pytest.fixture(scope="module")
-def cluster(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Cluster]:
-    """Start a scheduler and two workers, as the how-to does."""
-    if not hasattr(os, "fork"):
-        pytest.skip("needs fork")
+def cluster(tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[str, list[subprocess.Popen[bytes]]]]:
+    """Start a scheduler and two workers, as the how-to does; yield the address and the workers."""
     place = tmp_path_factory.mktemp("cluster")
     card = place / "scheduler.json"
-    worker = ["worker", "--scheduler-file", str(card), "--nthreads", "1", "--no-dashboard", "--no-nanny"]
-    worker += ["--local-directory", str(place / "local")]
-    scheduler = ["scheduler", "--host", "127.0.0.1", "--port", "0", "--no-dashboard"]
-    processes = [[*scheduler, "--scheduler-file", str(card)], worker, worker]
-    with started_python(_DASK, json.dumps(processes)) as running:
-        made = Cluster(running)
-        try:
-            with _client(card) as client:
-                client.wait_for_workers(2, timeout=60)
-                made.address = client.scheduler.address
-                yield made
-        finally:
-            made.close()
+    worker = ("worker", "--scheduler-file", str(card), "--nthreads", "1", "--no-dashboard", "--no-nanny")
+    local = str(place / "local")
+    scheduler = ("scheduler", "--host", "127.0.0.1", "--port", "0", "--no-dashboard")
+    with (
+        _dask(*scheduler, "--scheduler-file", str(card)),
+        _dask(*worker, "--local-directory", local) as one,
+        _dask(*worker, "--local-directory", local) as other,
+        _client(card) as client,
+    ):
+        client.wait_for_workers(2, timeout=60)
+        yield client.scheduler.address, [one, other]
 
 
 @pytest.fixture
@@ -108,34 +85,40 @@ def _reports(result: polycnc.BatchResult) -> list[dict[str, Any]]:
 
 
 @pytest.mark.long  # two schedulers and their workers are started
-def test_the_command_on_a_cluster(cluster: Cluster, folder: Path, tmp_path: Path) -> None:
+def test_the_command_on_a_cluster(
+    cluster: tuple[str, list[subprocess.Popen[bytes]]], folder: Path, tmp_path: Path
+) -> None:
+    address, workers = cluster
     (folder / "endless.tap").write_text("WHILE [1 EQ 1] DO1\n#1=#1+1\nEND1\n")
-    arguments = ("batch", "parts", "--cluster", cluster.address, "-o", "out.csv", "--timeout", "2")
+    arguments = ("batch", "parts", "--cluster", address, "-o", "out.csv", "--timeout", "2")
     done = command(*arguments, cwd=tmp_path, status=1)
     assert f"{PROGRAMS + 1} runs, 2 with errors\n" in done.stdout
     assert "endless.tap: stopped after 2 s\n" in done.stdout
     again = command(*arguments, cwd=tmp_path, status=1)
     assert f"done before and unchanged: {PROGRAMS}\n" in again.stdout
-    for process in cluster.workers:  # the cluster is left as it was
-        os.kill(process, 0)
+    assert [worker.poll() for worker in workers] == [None, None]  # the cluster is left as it was
 
 
 @pytest.mark.filterwarnings("ignore::ResourceWarning")  # of sockets that dask leaves to the garbage collector
-def test_a_worker_is_killed_and_everything_comes_once(cluster: Cluster, folder: Path) -> None:
+def test_a_worker_is_killed_and_everything_comes_once(
+    cluster: tuple[str, list[subprocess.Popen[bytes]]], folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    address, workers = cluster
+    monkeypatch.setenv("NUMBA_DISABLE_JIT", "1")
     here = _reports(polycnc.batch(folder, jobs=1))
     seen: list[int] = []
 
     def kill(number: int, total: int) -> None:
         seen.append(number)
         if len(seen) == 5:
-            os.kill(cluster.workers[0], signal.SIGKILL)
+            os.kill(workers[0].pid, signal.SIGKILL)
 
-    connected = batches.ClusterWorkers.at(cluster.address)
+    connected = batches.ClusterWorkers.at(address)
     try:
         there = _reports(polycnc.batch(folder, client=connected.client, progress=kill))
     finally:
         connected.close()
-    assert cluster.ended() == [cluster.workers[0], -signal.SIGKILL]
+    assert workers[0].wait(60) == -signal.SIGKILL
     assert seen[-1] == len(there) == PROGRAMS
     assert there == here
     assert [each["ok"] for each in there].count(False) == 1
