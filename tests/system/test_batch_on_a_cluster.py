@@ -53,7 +53,7 @@ def _client(card: Path) -> Any:
 
 @pytest.fixture(scope="module")
 def cluster(tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[str, list[subprocess.Popen[bytes]]]]:
-    """Start a scheduler and two workers, as the how-to does; yield the address and the workers."""
+    """Start a scheduler and three workers, as the how-to does; yield the address and the workers."""
     place = tmp_path_factory.mktemp("cluster")
     card = place / "scheduler.json"
     worker = ("worker", "--scheduler-file", str(card), "--nthreads", "1", "--no-dashboard", "--no-nanny")
@@ -63,10 +63,11 @@ def cluster(tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[str, lis
         _dask(*scheduler, "--scheduler-file", str(card)),
         _dask(*worker, "--local-directory", local) as one,
         _dask(*worker, "--local-directory", local) as other,
+        _dask(*worker, "--local-directory", local) as last,
         _client(card) as client,
     ):
-        client.wait_for_workers(2, timeout=60)
-        yield client.scheduler.address, [one, other]
+        client.wait_for_workers(3, timeout=60)
+        yield client.scheduler.address, [one, other, last]
 
 
 @pytest.fixture
@@ -96,7 +97,7 @@ def test_the_command_on_a_cluster(
     assert "endless.tap: stopped after 2 s\n" in done.stdout
     again = command(*arguments, cwd=tmp_path, status=1)
     assert f"done before and unchanged: {PROGRAMS}\n" in again.stdout
-    assert [worker.poll() for worker in workers] == [None, None]  # the cluster is left as it was
+    assert [worker.poll() for worker in workers] == [None, None, None]  # the cluster is left as it was
 
 
 @pytest.mark.filterwarnings("ignore::ResourceWarning")  # of sockets that dask leaves to the garbage collector
@@ -122,6 +123,37 @@ def test_a_worker_is_killed_and_everything_comes_once(
     assert seen[-1] == len(there) == PROGRAMS
     assert there == here
     assert [each["ok"] for each in there].count(False) == 1
+
+
+@pytest.mark.filterwarnings("ignore::ResourceWarning")
+def test_what_all_programs_need_is_sent_anew_when_the_worker_that_had_it_is_killed(
+    cluster: tuple[str, list[subprocess.Popen[bytes]]], folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    address, workers = cluster
+    monkeypatch.setenv("NUMBA_DISABLE_JIT", "1")
+    here = _reports(polycnc.batch(folder, jobs=1))
+    connected = batches.ClusterWorkers.at(address)
+    client = connected.client
+    scatter, places = client.scatter, client.run(os.getpid)
+    (only,) = (place for place, process in places.items() if process == workers[1].pid)
+    sent: list[int] = []
+
+    def to_one(*given: Any, **asked: Any) -> Any:
+        sent.append(len(sent))
+        if len(sent) > 1:
+            return scatter(*given, **asked)
+        found = scatter(*given, **{**asked, "broadcast": False, "workers": [only]})
+        os.kill(workers[1].pid, signal.SIGKILL)
+        workers[1].wait(60)
+        return found
+
+    monkeypatch.setattr(client, "scatter", to_one)
+    try:
+        there = _reports(polycnc.batch(folder, client=client))
+    finally:
+        connected.close()
+    assert there == here
+    assert sent == [0, 1]
 
 
 def test_nobody_answers() -> None:

@@ -15,6 +15,7 @@ from polycnc.runner.batches._store import version_digest
 Chunk = list[Job]
 Reported = list[tuple[str, Answer]]
 _PLUGIN = "polycnc-batch"
+_MOST_SENT = 5  # times that workers are sent what is the same for all programs
 _AHEAD = 3  # chunks for each worker that are on their way
 
 
@@ -134,13 +135,13 @@ class ClusterWorkers:
             )
         _check_versions(client)
         client.register_plugin(ChildrenPlugin(limits), name=_PLUGIN)
-        sent = client.scatter([tuple(setups)], broadcast=True, hash=False)[0]
-        waiting: dict[Any, Chunk] = {}
+        sent = client.scatter([tuple(setups)], broadcast=True, hash=False)
+        waiting: dict[Any, tuple[Chunk, Any]] = {}
         futures = distributed.as_completed([], loop=client.loop)
 
         def submit(chunk: Chunk) -> None:
-            future = client.submit(run_chunk, chunk, sent, limits, pure=False)
-            waiting[future] = chunk
+            future = client.submit(run_chunk, chunk, sent[-1], limits, pure=False)
+            waiting[future] = chunk, sent[-1]
             futures.add(future)
 
         try:
@@ -148,10 +149,17 @@ class ClusterWorkers:
                 if (chunk := next(chunks, None)) is not None:
                     submit(chunk)
             for future in futures:
-                chunk = waiting.pop(future)
+                chunk, had = waiting.pop(future)
                 try:
                     reported: Reported = future.result()
                 except (distributed.KilledWorker, distributed.client.FutureCancelledError) as error:
+                    # The setups may have been lost with the last worker that had them.
+                    is_killed = isinstance(error, distributed.KilledWorker)
+                    if not is_killed and had is sent[-1] and len(sent) < _MOST_SENT:
+                        sent += client.scatter([tuple(setups)], broadcast=True, hash=False)
+                    if not is_killed and had is not sent[-1]:
+                        submit(chunk)
+                        continue
                     if len(chunk) > 1:  # one of them may be why: each by itself
                         for job in chunk:
                             submit([job])
