@@ -129,13 +129,10 @@ class ClusterWorkers:
         client = self._client
         threads = sum(client.nthreads().values())
         if not threads:
-            raise UsageError(
-                "the Dask cluster has no worker",
-                hint="Start one with `dask worker ADDRESS`, on as many computers as you like.",
-            )
+            raise _no_worker()
         _check_versions(client)
         client.register_plugin(ChildrenPlugin(limits), name=_PLUGIN)
-        sent = client.scatter([tuple(setups)], broadcast=True, hash=False)
+        sent = [_spread(client, setups)]
         waiting: dict[Any, tuple[Chunk, Any]] = {}
         futures = distributed.as_completed([], loop=client.loop)
 
@@ -156,7 +153,7 @@ class ClusterWorkers:
                     # The setups may have been lost with the last worker that had them.
                     is_killed = isinstance(error, distributed.KilledWorker)
                     if not is_killed and had is sent[-1] and len(sent) < _MOST_SENT:
-                        sent += client.scatter([tuple(setups)], broadcast=True, hash=False)
+                        sent.append(_spread(client, setups))
                     if not is_killed and had is not sent[-1]:
                         submit(chunk)
                         continue
@@ -172,6 +169,25 @@ class ClusterWorkers:
         finally:
             client.cancel(list(waiting))
             client.unregister_worker_plugin(_PLUGIN)
+
+
+def _no_worker() -> UsageError:
+    return UsageError(
+        "the Dask cluster has no worker",
+        hint="Start one with `dask worker ADDRESS`, on as many computers as you like.",
+    )
+
+
+def _spread(client: Any, setups: Sequence[Setup]) -> Any:
+    """Send all workers what is the same for all programs; return what stands for it.
+
+    Raises:
+        UsageError: There is no worker, or no longer.
+    """
+    try:
+        return client.scatter([tuple(setups)], broadcast=True, hash=False)[0]
+    except TimeoutError:
+        raise _no_worker() from None
 
 
 def _check_versions(client: Any) -> None:
