@@ -32,11 +32,11 @@ def calls_command(
     ] = 1.0,
 ) -> None:
     """Serve a machine to programs that use its C library, until Ctrl-C ends it."""
+    import asyncio
     from dataclasses import replace
 
     from polycnc.cli._serve import serve_plan
     from polycnc.errors import UsageError, did_you_mean
-    from polycnc.servers.process import run
     from polycnc.servers.setup import Flags, plan_of
 
     if kind not in KINDS:
@@ -57,7 +57,7 @@ def calls_command(
     file = str(machine) if machine is not None else ""
     plan = plan_of(Flags(file=None, kinds={kind: file}, doors=f"calls={port}", axes=axes, rate=rate))
     shared = tuple((row, replace(at, path=str(trace or ""))) for row, at in plan.shared)
-    run(serve_plan(replace(plan, shared=shared)))
+    asyncio.run(serve_plan(replace(plan, shared=shared)))
 
 
 def _replay(kind: str, machine: Path | None, axes: int, trace: Path) -> None:

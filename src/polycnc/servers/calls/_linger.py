@@ -7,7 +7,6 @@ import os
 import select
 import socket
 from collections.abc import Iterator
-from contextlib import suppress
 
 _MOST_CALLS = 16  # then the event loop has its turn, whoever calls
 _WAIT_MS = 1
@@ -23,15 +22,13 @@ class Linger:
 
     def __init__(self, transport: asyncio.Transport, buffer: memoryview) -> None:
         self._transport, self._buffer = transport, buffer
-        loop = asyncio.get_running_loop()
-        selector = getattr(loop, "_selector", None)
-        looked_at = getattr(loop, "_get_backend_id", None) if selector is None else selector.fileno
+        selector = getattr(asyncio.get_running_loop(), "_selector", None)
         self._line: socket.socket | None = None
-        if hasattr(select, "epoll") and looked_at is not None:
+        if hasattr(select, "epoll") and selector is not None:
             self._line = socket.socket(fileno=os.dup(transport.get_extra_info("socket").fileno()))
             self._poll = select.poll()
             self._poll.register(self._line, select.POLLIN)
-            self._poll.register(looked_at(), select.POLLIN)
+            self._poll.register(selector.fileno(), select.POLLIN)
 
     def received(self) -> Iterator[int]:
         """Go through how many bytes have come, each time as long as the connection is read at all."""
@@ -49,18 +46,6 @@ class Linger:
             if not count:
                 return
             yield count
-
-    def send(self, data: bytes) -> None:
-        """Send at once what the system takes; the rest when the event loop finds that it takes more.
-
-        An event loop may send what it is given after its turn, which a wait here would keep from coming.
-        """
-        transport = self._transport
-        if self._line is not None and not (transport.is_closing() or transport.get_write_buffer_size()):
-            with suppress(OSError):  # the event loop hears of it too
-                data = data[self._line.send(data) :]
-        if data:
-            transport.write(data)
 
     def close(self) -> None:
         """Wait no more."""

@@ -155,9 +155,8 @@ class _Line(asyncio.BufferedProtocol):
         return Treatment(any(each.drop for each in found), max(each.delay_s for each in found))
 
     def connection_made(self, transport: asyncio.BaseTransport) -> None:
-        self.transport = transport = cast(
-            asyncio.Transport, transport
-        )  # not every event loop derives its own
+        # Not every event loop derives its own from that class.
+        self.transport = transport = cast(asyncio.Transport, transport)
         notice_loss(transport)
         self._linger = Linger(transport, self._buffer)
         if not self._server.lines.join(self):
@@ -221,7 +220,7 @@ class _Line(asyncio.BufferedProtocol):
 
     def _send_now(self, sent: bytes) -> None:
         if sent:
-            self._linger.send(sent)
+            self.transport.write(sent)
         if self._machines and self._limit is not None:
             self._limit.cancel()
             self._limit = None

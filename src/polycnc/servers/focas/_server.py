@@ -173,9 +173,8 @@ class _Line(asyncio.Protocol):
         self._new = True
 
     def connection_made(self, transport: asyncio.BaseTransport) -> None:
-        self.transport = transport = cast(
-            asyncio.Transport, transport
-        )  # not every event loop derives its own
+        # Not every event loop derives its own from that class.
+        self.transport = transport = cast(asyncio.Transport, transport)
         notice_loss(transport)
         if self._server.lines.join(self):
             self._patience.begin(LEAST_PATIENCE_S)
@@ -237,10 +236,7 @@ class _Line(asyncio.Protocol):
         """End with a reset, as controls do, not with the end of the stream; what was written goes out before."""
         line: socket.socket = self.transport.get_extra_info("socket")
         line.setsockopt(socket.SOL_SOCKET, socket.SO_LINGER, struct.pack("ii", 1, 0))
-        if self.transport.get_write_buffer_size():
-            self.transport.close()
-        else:
-            self.transport.abort()
+        self.transport.close()
 
     def _hold(self, waiting: bool) -> None:
         if waiting != self._waiting:

@@ -9,7 +9,7 @@ export class Held {
   // Commands are sent one after the other, in the order of the presses; each tells whether it has been carried out.
   send(command) {
     this.pending++;
-    this.last = this.last.then(command).then((isDone) => {
+    this.last = this.last.then(command).catch(() => false).then((isDone) => {
       this.pending--;
       this.untilMs = isDone ? performance.now() + OLDER_MS : -Infinity;
     });
