@@ -45,8 +45,8 @@ Beside the header there are declarations for programs of other languages that us
 | `mcug3.bas` | Visual Basic 6: a module | `String` | the first element | `vbNullString` of texts |
 
 Names are those of C. One that is a word of the language, in Pascal and Visual Basic also one that is that of a type, has a `_` behind it
-(`AS_`), in C# an `@` before it. Unions of C# are their `bytes`. A Pascal program, a C# program, and a C program that loads the library by
-name while it runs are in `examples/`.
+(`AS_`), in C# an `@` before it. Unions of C# are their `bytes`. A program of Pascal, of C#, of Visual Basic, and a C program
+that loads the library by name while it runs are in `examples/`.
 
 ## In the program's own process
 

