@@ -38,6 +38,7 @@ HOW_TO_GET = {
     "pip install pymtconnect": "no foreign client of MTConnect (pip install pymtconnect requests)",
     "no node-opcua": "no foreign client of OPC UA (npm install --prefix ~/.cache/polycnc/node node-opcua-client)",
     "no o6": "no second foreign client of OPC UA (pip install o6)",
+    "no opcua-client": "no window of OPC UA on the PATH (pip install opcua-client, in an environment of its own)",
     "inventory": "no inventory of the manuals: put it beside the checkout as shared/inventory",
     "Chromium": "no browser on the PATH (Debian: apt-get install chromium)",
     "Playwright": "no Playwright (pip install -e '.[test]')",

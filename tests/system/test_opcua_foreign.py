@@ -33,6 +33,12 @@ def urls() -> Iterator[dict[str, str]]:
     assert "Traceback" not in error, error
 
 
+def _python_of(command: str) -> Path | None:
+    """Return the Python that a command on the PATH belongs to."""
+    found = shutil.which(command)
+    return Path(found).resolve().with_name("python") if found else None
+
+
 def answers(*command: str | Path, **environment: str) -> dict[str, Any]:
     done = subprocess.run(
         [str(each) for each in command], capture_output=True, text=True, timeout=120, check=False,
@@ -67,4 +73,17 @@ def test_o6_reads_writes_and_subscribes(request: pytest.FixtureRequest) -> None:
     assert said == {
         "state": 2, "write": "GOOD", "too much": "BAD_OUT_OF_RANGE", "fixed": "BAD_NOT_WRITABLE", "override": 63.0,
         "changed": True,
+    }  # fmt: skip
+
+
+@pytest.mark.skipif(_python_of("opcua-client") is None, reason="no opcua-client: pip install opcua-client")
+def test_opcua_client_shows_every_node_writes_and_is_told(
+    request: pytest.FixtureRequest, tmp_path: Path
+) -> None:
+    python, urls = _python_of("opcua-client"), request.getfixturevalue("urls")
+    assert python is not None
+    window = SUPPORT / "opcua_window.py"
+    said = answers(python, window, urls["opcua:"], urls["http:"], XDG_CONFIG_HOME=str(tmp_path))
+    assert said == {
+        "errors": [], "shown": True, "too much": "BadOutOfRange", "changed": True, "event": [["emergency stop", 1000]],
     }  # fmt: skip
