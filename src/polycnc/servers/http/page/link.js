@@ -4,7 +4,7 @@ import { TEXTS } from "/texts.js";
 import { Lease } from "/lease.js";
 
 const OF_CHANNEL = ["select_mode", "select_program", "set_mdi", "search", "cycle_start", "feed_hold", "reset", "set_overrides", "set_switches", "set_breakpoints"];
-const RATE = 20, STALE_MS = 700, LOOK_MS = 100, AGAIN_MS = 1000;
+const RATE = 25, STALE_MS = 700, LOOK_MS = 100, AGAIN_MS = 1000;
 
 export class Link extends EventTarget {
   // Events: `message` (detail: what the stream tells), `status` (detail: a status), `lost`.
