@@ -227,7 +227,7 @@ def test_more_than_the_drive_can_do_is_commanded_all_the_same_and_shows_as_posit
         )
         assert rig.board.errorreg == 0
         rows = rig.board.kernel.recorder
-        worst[jvl] = abs(rig.board.axes[0].position_error)
+        worst[jvl] = abs(rig.board.axes[0].PosErr)
         assert rows.filled[0] > 0
     assert worst[90.0] > 10.0 > 2.0 > worst[40.0]
 
