@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 
 import numpy as np
+import numpy.typing as npt
 import pytest
 
 from polycnc.controllers.apci.board._axis_commands import (
@@ -12,6 +13,7 @@ from polycnc.controllers.apci.board._axis_commands import (
     azo,
     cl,
     clv,
+    lprs,
     ol,
     ra,
     shp,
@@ -343,25 +345,30 @@ def test_zero_offsets() -> None:
         assert axis.rp == rp
 
 
+def recorded(rig: Rig, i: int) -> npt.NDArray[np.float64]:
+    """Return what was recorded of an axis."""
+    return rig.board.state.analysis[: rig.board.state.board[0]["recorded"], i]
+
+
 @pytest.mark.covers("apci.lpr", "apci.lprs", "apci.LATCH_INFOS")
 def test_recording_for_the_analysis() -> None:
     rig = Rig("number_of_axes = 3\n" + LAG)
     axis = rig.board.axes[0]
-    rig.board.start_analysis((0,), every=5)
+    lprs(rig.board, (0,), every=5)
     jr(rig.board, (0,), (20.0,))
     expected = []
     for scan in range(1, 201):
         rig.board.advance(1)
         if scan % 5 == 0:
             expected.append((axis.dp, axis.rp, float(axis.servo["output"])))
-    found = rig.board.analysis(0)
+    found = recorded(rig, 0)
     assert found.shape == (40, 3)
     assert found == pytest.approx(np.array(expected))
-    rig.board.start_analysis((0, 1, 2))
+    lprs(rig.board, (0, 1, 2))
     rig.board.advance(10)
-    assert len(rig.board.analysis(2)) == 10
+    assert len(recorded(rig, 2)) == 10
     rig.board.advance(10_000)
-    assert len(rig.board.analysis(0)) == 4096  # full: it keeps what it has
+    assert len(recorded(rig, 0)) == 4096  # full: it keeps what it has
 
 
 @pytest.mark.filterwarnings("ignore:overflow encountered:RuntimeWarning")  # of NumPy, uncompiled

@@ -12,7 +12,7 @@ from polycnc.controllers.apci.board._motor_command import MotorCommand
 from polycnc.controllers.apci.board._parameter import Parameter
 from polycnc.controllers.apci.board._system_file import SystemFile
 from polycnc.controllers.apci.board._units import seconds
-from polycnc.controllers.apci.core._command_port import set_command
+from polycnc.controllers.apci.core._command_port import write_command
 from polycnc.controllers.apci.core._compiled_entries import change_override
 from polycnc.controllers.apci.core._motion import profile_velocity
 from polycnc.controllers.apci.core._registers import Axst, Digi, assigned_inputs
@@ -248,15 +248,11 @@ class Axis:
 
     @mcp.setter
     def mcp(self, counts: int) -> None:
-        set_command(self._state, self._kernel, self.index, counts)
+        write_command(self._state, self._kernel, self.index, counts)
 
     def step_frequency_hz(self, mcp: int) -> float:
         """Return the signed step frequency of a stepper's motor command."""
         return self._motor.step_frequency_hz(mcp)
-
-    def check_configuration(self, planned: SystemFile) -> None:
-        """Compare the board with the system file that was loaded."""
-        self.row["cef"] = bool(planned.differences(self._config))
 
     # ------------------------------------------------------------------ status
 

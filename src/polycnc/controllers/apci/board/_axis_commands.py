@@ -92,7 +92,7 @@ def rs(board: CommandedBoard) -> None:
     for axis in board.axes:
         _open(board, axis.index)
         _clear(board, axis.index)
-        axis.check_configuration(board.planned)
+        axis.row["cef"] = bool(board.planned.differences(board.config))
     board.outputs = board.config.outputs_at_reset
     board.trovr = 1.0
     if board.tasks is not None:
@@ -158,6 +158,14 @@ def lps(board: CommandedBoard, i: int, scans: int) -> None:
     if scans >= 0:
         row = board.state.axis[i]
         row["latch_scans"], row["latch_count"] = scans, 0
+
+
+def lprs(board: CommandedBoard, axes: Sequence[int], *, every: int = 1) -> None:
+    """Record setpoint, actual position and commanded velocity of `axes` every so many scans (Manual 002, 4.4.26)."""
+    row = board.state.board[0]
+    row["record_axes"] = sum({1 << i for i in axes})
+    row["record_every"] = max(every, 1)
+    row["record_count"] = row["recorded"] = 0
 
 
 def utrovr(board: CommandedBoard, axes: Sequence[int]) -> None:

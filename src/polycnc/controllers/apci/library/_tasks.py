@@ -34,7 +34,6 @@ from polycnc.controllers.apci.library._call import (
     session_call,
 )
 from polycnc.controllers.apci.library._session import UNKNOWN_ERROR, Session
-from polycnc.controllers.apci.sap import Tasks
 from polycnc.controllers.apci.sap._board_host import BoardTasks
 from polycnc.controllers.library import Refused
 
@@ -42,10 +41,10 @@ _STATUS = ("errnum", "errline", "stackfree", "running", "csrcline")
 _BULK = {100: 100, COMMON_VARIABLES: COMMON_VARIABLES}  # index: variables from 0
 
 
-def _tasks(board: Board) -> Tasks:
+def _tasks(board: Board) -> BoardTasks:
     if not isinstance(board.tasks, BoardTasks):
         raise Refused(UNKNOWN_ERROR)
-    return board.tasks.tasks
+    return board.tasks
 
 
 # ---------------------------------------------------------------------- control

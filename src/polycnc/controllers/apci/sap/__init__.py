@@ -12,11 +12,10 @@ from polycnc.controllers.apci.sap._host import BUFFER_BYTES, Call, Host
 from polycnc.controllers.apci.sap._lexer import KEYWORDS, NAME, SourceText, tokens
 from polycnc.controllers.apci.sap._program import TASKS, Program
 from polycnc.controllers.apci.sap._task import WAITING, Task, TaskStatus
-from polycnc.controllers.apci.sap._tasks import BUDGET, Tasks
+from polycnc.controllers.apci.sap._tasks import Tasks
 
 __all__ = [
     "AXIS_QUALIFIERS",
-    "BUDGET",
     "BUFFER_BYTES",
     "COMMANDS",
     "FAULTS",

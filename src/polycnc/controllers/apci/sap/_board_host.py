@@ -21,7 +21,7 @@ from polycnc.controllers.apci.board._move_commands import (
 )
 from polycnc.controllers.apci.board._numbers import is_number
 from polycnc.controllers.apci.core._state import Whole
-from polycnc.controllers.apci.sap import AXIS_QUALIFIERS, Call, Program, Tasks
+from polycnc.controllers.apci.sap import AXIS_QUALIFIERS, Call, Tasks
 from polycnc.controllers.apci.sap._commands import INTEGER
 from polycnc.controllers.apci.sap._compiled_turns import CompiledTurns
 from polycnc.errors import UsageError
@@ -263,32 +263,16 @@ def _checked(index: int | None, count: int = 1000) -> int:
     return index
 
 
-class BoardTasks:
+class BoardTasks(Tasks):
     """The four tasks of a board, in its time."""
 
     def __init__(self, board: Board) -> None:
         host = BoardHost(board)
-        self.tasks = Tasks(host)
+        super().__init__(host)
         budget = board.config.rulings.instructions_per_scan
-        self._turns = CompiledTurns(self.tasks.each, host, (board.state, board.kernel), budget)
+        self._turns = CompiledTurns(self.each, host, (board.state, board.kernel), budget)
         board.tasks = self
-
-    def load(self, program: Program) -> None:
-        """Load a compiled program into the task that it names."""
-        self.tasks.load(program)
 
     def turns(self) -> Whole:
         """Give the tasks their turns in this scan; return the call that gives them those of the scans that follow."""
         return self._turns.give()
-
-    def halt(self) -> None:
-        """Halt all tasks."""
-        self.tasks.halt_all()
-
-    def save(self) -> list[dict[str, Any]]:
-        """Return the state of all tasks, with their programs, as plain data."""
-        return self.tasks.save()
-
-    def read_saved(self, data: Any) -> Callable[[], None]:
-        """Read what `save` has returned; return what puts it back."""
-        return self.tasks.read_saved(data)
