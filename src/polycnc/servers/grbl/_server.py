@@ -8,12 +8,11 @@ import os
 import re
 from collections.abc import Callable
 from pathlib import Path
-from typing import Protocol, TypeVar
+from typing import Protocol
 
 from polycnc.errors import UsageError
-from polycnc.servers.machines import AS_USUAL, Treatment, notice_loss, peers_of
+from polycnc.servers.machines import AS_USUAL, Owner, Treatment, notice_loss, peers_of
 
-R = TypeVar("R")
 PORT = 8123
 _TURN_S = 0.01  # between two looks at what goes on, which is less than a sender's buffer lasts
 _PIECE_BYTES = 4096
@@ -24,13 +23,6 @@ _REQUESTS = re.compile(rb"[^\n?]*[\n?]|[^\n?]+")
 _SILENT_S = 5.0
 """How long a sender may send nothing at all before another one takes its place; senders ask for a status."""
 _OTHER = b"[MSG:Another sender is connected]\r\n"
-
-
-class Owner(Protocol):
-    """Carry out what is asked between two cycles of a control."""
-
-    def submit(self, command: Callable[[], R], done: Callable[[R], None]) -> object:
-        """Carry out `command` and give its result to `done` in the event loop."""
 
 
 class Core(Protocol):

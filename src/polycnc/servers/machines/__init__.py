@@ -13,6 +13,7 @@ from polycnc.servers.machines._log import Log
 from polycnc.servers.machines._machine import (
     AS_USUAL,
     MachineError,
+    Made,
     ServedMachine,
     Treatment,
     machines_of_path,
@@ -50,6 +51,7 @@ __all__ = [
     "Keeper",
     "Log",
     "MachineError",
+    "Made",
     "MemoryPrograms",
     "NamedValue",
     "Owner",

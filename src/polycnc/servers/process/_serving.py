@@ -16,6 +16,7 @@ from polycnc.servers.machines import (
     DoorKind,
     Keeper,
     Log,
+    Made,
     Scenario,
     ServedDevice,
     ServedMachine,
@@ -25,14 +26,13 @@ from polycnc.servers.machines import (
     tell_errors,
 )
 from polycnc.servers.process._kinds import KINDS
-from polycnc.servers.process._made import Machinery, Made
+from polycnc.servers.process._machinery import Machinery
 
 _SHARE_S = 0.01  # of the wall clock that all machines together may take before a door answers
 _LEAST_SHARE_S = 0.002  # of one machine: more than what it does at once costs
 _APART_S, _MOST_APART_S = 0.1, 5.0  # the beginnings of two machines, and of the first and the last
 _CLOSE_S = 0.6  # that doors have to end their connections
 _MOST_PROGRAM_BYTES = 64 << 20
-Load = Callable[[str, bytes], None]
 
 
 @dataclass(frozen=True, slots=True)
@@ -63,7 +63,7 @@ class Serving:
     doors: list[tuple[str, Door]] = field(default_factory=list)
     served_by: list[Sequence[ServedMachine]] = field(default_factory=list)
     """The machines of each door."""
-    programs: dict[str, tuple[Load, Path]] = field(default_factory=dict)
+    programs: dict[str, Path] = field(default_factory=dict)
     told: set[str] = field(default_factory=set)
     """Kinds of errors that `on_error` has been told of, once each."""
 
@@ -120,7 +120,7 @@ class Serving:
         """Start the programs, without letting time pass."""
         for machine in self.machines:
             if (found := self.programs.get(machine.name)) is not None:
-                _start(machine, *found)
+                _start(machine, found)
 
     async def run(self) -> None:
         """Serve until the time of a machine cannot pass any more, or this is cancelled."""
@@ -163,7 +163,7 @@ class Serving:
                 raise UsageError(
                     f"machine {name} runs no part programs", hint="Leave the program out, or serve another."
                 )
-            self.programs[name] = made.load, wanted.program
+            self.programs[name] = wanted.program
         served: ServedDevice[Any] = ServedDevice(
             made.device,
             made.find_control,
@@ -173,23 +173,7 @@ class Serving:
         keeper = Keeper(
             served, self.wall, rate=wanted.rate, share_s=share_s, on_late=self.on_late, turns=turns
         )
-        machine = ServedMachine(
-            name,
-            wanted.kind,
-            made.device,
-            served,
-            keeper,
-            made.find_control,
-            made.own,
-            made.programs,
-            made.end,
-            made.parameters,
-            made.variables,
-            made.signals,
-            made.screen,
-            made.tasks,
-            made.folder,
-        )
+        machine = ServedMachine(**made.all(), name=name, kind=wanted.kind, served=served, keeper=keeper)
         self.machines.append(machine)
         if wanted.story is not None:
             served.follow(wanted.story(machine, self.log))
@@ -209,7 +193,7 @@ def _again(made: Made) -> Callable[[], None]:
     return again
 
 
-def _start(machine: ServedMachine, load: Load, path: Path) -> None:
+def _start(machine: ServedMachine, path: Path) -> None:
     """Let a machine take a program over, and start it."""
     try:
         if path.stat().st_size > _MOST_PROGRAM_BYTES:
@@ -219,7 +203,8 @@ def _start(machine: ServedMachine, load: Load, path: Path) -> None:
         content = path.read_bytes()
     except OSError as error:
         raise UsageError(f"{path}: cannot be read: {error.strerror}", hint="Name a program file.") from None
-    load(path.name, content)
     again = machine.served.again
+    assert machine.load is not None
     assert again is not None
+    machine.load(path.name, content)
     again()
