@@ -12,9 +12,10 @@ from polycnc.machine import MachineConfig, load_machine
 from polycnc.nc import ChosenDialect, Dialect, ProgramText, choose_dialect
 from polycnc.outputs import check_output, keep_inputs
 from polycnc.runner._execution import LOOP_LIMIT_S
-from polycnc.runner._program_control import ProgramControl, Surroundings, check_screen_file, root_of
+from polycnc.runner._program_control import Surroundings, check_screen_file, root_of
 
 if TYPE_CHECKING:
+    from polycnc.controllers.bosch import ChannelHost
     from polycnc.stock import Form
 
 Program = str | Path | ProgramText
@@ -147,7 +148,7 @@ class RunSettings:
         return Surroundings(self.root_of(program), self.keys, self.skip_levels)
 
     def check_outputs(
-        self, program: Program, text: ProgramText, dialect: Dialect, control: ProgramControl | None
+        self, program: Program, text: ProgramText, dialect: Dialect, control: ChannelHost | None
     ) -> None:
         """Check that what a program shows, and the parameters that outlive it, can be written where they should.
 
@@ -178,7 +179,7 @@ class RunSettings:
             "a file of parameters",
         )
 
-    def check_screen(self, program: Program, text: ProgramText, control: ProgramControl | None) -> None:
+    def check_screen(self, program: Program, text: ProgramText, control: ChannelHost | None) -> None:
         """Check that what a program shows can be written where it should.
 
         Raises:

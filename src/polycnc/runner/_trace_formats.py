@@ -10,7 +10,7 @@ import csv
 import shutil
 from collections.abc import Iterator, Sequence
 from pathlib import Path
-from typing import Any, Protocol, TextIO
+from typing import Any, TextIO, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
@@ -32,19 +32,6 @@ def file_columns(rows: Floats) -> Floats:
     """Return the columns of recorder rows that go into a file, in order."""
     kept = [*_COLUMNS, *range(LEADING, rows.shape[1])]
     return rows[:, kept]
-
-
-class TraceFile(Protocol):
-    """A trace file that is written as the program runs."""
-
-    def add(self, rows: Floats, programs: Names | None) -> None:
-        """Write a piece of the record; `programs` [rows] where `add_programs` has been called."""
-
-    def add_programs(self, program: str) -> None:
-        """Begin the column of programs; all rows until now belong to `program`."""
-
-    def close(self, complete: bool) -> None:
-        """Finish the file; one that is not complete will be removed."""
 
 
 class CsvTrace:
@@ -201,7 +188,8 @@ def _pyarrow() -> Any:
     return pyarrow
 
 
-WRITERS: dict[str, type[CsvTrace] | type[NpzTrace] | type[ParquetTrace]] = {
+TraceFile: TypeAlias = CsvTrace | NpzTrace | ParquetTrace
+WRITERS: dict[str, type[TraceFile]] = {
     ".csv": CsvTrace,
     ".npz": NpzTrace,
     ".parquet": ParquetTrace,

@@ -6,12 +6,12 @@ import csv
 from collections.abc import Iterable, Iterator
 from itertools import islice
 from pathlib import Path
-from typing import Any, Protocol
+from typing import Any
 
 from polycnc.errors import UsageError
 from polycnc.outputs import check_output, complete_or_absent, keep_inputs
 from polycnc.runner.batches._job import ProgramReport
-from polycnc.runner.batches._report import write_report
+from polycnc.runner.batches._report import Reports, write_report
 
 _PIECE = 4096  # rows of a piece of a Parquet file
 _NUMBERS = (
@@ -47,15 +47,7 @@ _COLUMNS = (
 )
 
 
-class Batch(Protocol):
-    """The reports of a batch."""
-
-    def __len__(self) -> int: ...
-
-    def __iter__(self) -> Iterator[ProgramReport]: ...
-
-
-def _write_csv(batch: Batch, path: Path) -> None:
+def _write_csv(batch: Reports, path: Path) -> None:
     with path.open("w", encoding="utf-8", newline="") as file:
         writer = csv.writer(file)
         writer.writerow(_COLUMNS)
@@ -69,7 +61,7 @@ def _cell(value: object) -> object:
     return "" if value is None else str(value).lower() if isinstance(value, bool) else value
 
 
-def _write_parquet(batch: Batch, path: Path) -> None:
+def _write_parquet(batch: Reports, path: Path) -> None:
     arrow = _pyarrow()
     text, number, whole = arrow.string(), arrow.float64(), arrow.int64()
     types: dict[str, Any] = {
@@ -105,7 +97,7 @@ def _row(report: ProgramReport) -> dict[str, Any]:
     }
 
 
-def _pieces(batch: Batch) -> Iterator[list[ProgramReport]]:
+def _pieces(batch: Reports) -> Iterator[list[ProgramReport]]:
     rest = iter(batch)
     while piece := list(islice(rest, _PIECE)):
         yield piece
@@ -144,7 +136,7 @@ def check_batch_file(path: str | Path, inputs: Iterable[str | Path] = ()) -> Pat
     return target
 
 
-def write_batch(batch: Batch, path: str | Path) -> Path:
+def write_batch(batch: Reports, path: str | Path) -> Path:
     """Write the reports of a batch, in their order, and return the path.
 
     Raises:

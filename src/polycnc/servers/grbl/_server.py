@@ -8,10 +8,14 @@ import os
 import re
 from collections.abc import Callable
 from pathlib import Path
-from typing import Protocol
+from typing import TYPE_CHECKING
 
 from polycnc.errors import UsageError
 from polycnc.servers.machines import AS_USUAL, Owner, Treatment, notice_loss, peers_of
+
+if TYPE_CHECKING:
+    from polycnc.servers.grbl._core import GrblCore
+    from polycnc.servers.grbl._watching import GrblWatch
 
 PORT = 8123
 _TURN_S = 0.01  # between two looks at what goes on, which is less than a sender's buffer lasts
@@ -25,23 +29,6 @@ _SILENT_S = 5.0
 _OTHER = b"[MSG:Another sender is connected]\r\n"
 
 
-class Core(Protocol):
-    """What answers a sender; each returns what it gets."""
-
-    @property
-    def busy(self) -> bool:
-        """Whether something that was begun has not ended."""
-
-    def greet(self) -> bytes:
-        """Greet a sender."""
-
-    def receive(self, data: bytes) -> bytes:
-        """Take bytes."""
-
-    def turn(self) -> bytes:
-        """Go on when time has passed."""
-
-
 class GrblServer:
     """Let a sender reach `core`: one at a time on a TCP port (0: a free one), besides one on a pseudo terminal.
 
@@ -52,7 +39,7 @@ class GrblServer:
     def __init__(
         self,
         owner: Owner,
-        core: Core,
+        core: GrblCore | GrblWatch,
         *,
         address: str = "127.0.0.1",
         port: int = PORT,
