@@ -192,7 +192,8 @@ def run_program(
     simulated = Machine(config, servo=settings.servo, record_cycles=record.cycles)
     dialect = (chosen := settings.dialect_of(text)).dialect
     control = control_for(dialect, text, simulated, settings.surroundings_of(program))
-    settings.check_outputs(program, text, dialect, control)
+    settings.check_screen(program, text, control)
+    settings.check_parameters(program, dialect)
     log = EventLog(text)
     options = RunOptions(
         block_delete=settings.skip_levels,

@@ -10,6 +10,7 @@ from typing import Any
 
 from polycnc.errors import UsageError
 from polycnc.outputs import check_output, complete_or_absent, keep_inputs
+from polycnc.runner._trace_formats import pyarrow_for
 from polycnc.runner.batches._job import ProgramReport
 from polycnc.runner.batches._report import Reports, write_report
 
@@ -62,7 +63,7 @@ def _cell(value: object) -> object:
 
 
 def _write_parquet(batch: Reports, path: Path) -> None:
-    arrow = _pyarrow()
+    arrow = pyarrow_for("a Parquet table")
     text, number, whole = arrow.string(), arrow.float64(), arrow.int64()
     types: dict[str, Any] = {
         **dict.fromkeys(_COLUMNS, text),
@@ -103,17 +104,6 @@ def _pieces(batch: Reports) -> Iterator[list[ProgramReport]]:
         yield piece
 
 
-def _pyarrow() -> Any:
-    try:
-        import pyarrow
-        import pyarrow.parquet
-    except ImportError:
-        raise UsageError(
-            "a Parquet table needs pyarrow", hint="Install it: pip install 'polycnc[parquet]'."
-        ) from None
-    return pyarrow
-
-
 _WRITERS = {".html": write_report, ".htm": write_report, ".parquet": _write_parquet, ".csv": _write_csv}
 BATCH_FORMATS = tuple(_WRITERS)
 
@@ -132,7 +122,7 @@ def check_batch_file(path: str | Path, inputs: Iterable[str | Path] = ()) -> Pat
         )
     keep_inputs(target, inputs, "a report")
     if target.suffix.lower() == ".parquet":
-        _pyarrow()
+        pyarrow_for("a Parquet table")
     return target
 
 

@@ -60,9 +60,8 @@ class Serving:
     on_late: Callable[[float], None]
     on_error: Callable[[str], None] = lambda text: None
     machines: list[ServedMachine] = field(default_factory=list)
-    doors: list[tuple[str, Door]] = field(default_factory=list)
-    served_by: list[Sequence[ServedMachine]] = field(default_factory=list)
-    """The machines of each door."""
+    doors: list[tuple[str, Door, Sequence[ServedMachine]]] = field(default_factory=list)
+    """Each with the machines that it serves."""
     programs: dict[str, Path] = field(default_factory=dict)
     told: set[str] = field(default_factory=set)
     """Kinds of errors that `on_error` has been told of, once each."""
@@ -92,15 +91,10 @@ class Serving:
                 )
             door = kind.open_door(machines, at)
             await door.start()
-            self.doors.append((kind.name, door))
+            self.doors.append((kind.name, door, machines))
             for machine in machines:
                 machine.doors[kind.name] = door
-            self.served_by.append(machines)
             self.log.write("open", door=kind.name, address=door.said)
-
-    def doors_of_machines(self) -> list[tuple[str, Door, Sequence[ServedMachine]]]:
-        """Return the doors, each with its machines."""
-        return [(*door, machines) for door, machines in zip(self.doors, self.served_by, strict=True)]
 
     async def begin(self) -> None:
         """Start the programs and let time begin; what has to be compiled is compiled here.
@@ -133,7 +127,7 @@ class Serving:
     async def close(self) -> None:
         """Close every door, all at once, and switch the machines off; a door that takes its time is not waited for."""
         tell_errors(asyncio.get_running_loop(), lambda kind, text: self.log.write(kind, text=text))
-        closing = [asyncio.ensure_future(door.close()) for _, door in self.doors]
+        closing = [asyncio.ensure_future(door.close()) for _, door, _ in self.doors]
         if closing:
             await asyncio.wait(closing, timeout=_CLOSE_S)
         for machine in self.machines:
