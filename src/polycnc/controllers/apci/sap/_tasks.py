@@ -5,9 +5,10 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
+from polycnc.controllers.apci.core._turn_state import TASKS
 from polycnc.controllers.apci.sap._faults import TASK_NUMBER, Fault
 from polycnc.controllers.apci.sap._host import Host
-from polycnc.controllers.apci.sap._program import TASKS, Program
+from polycnc.controllers.apci.sap._program import Program
 from polycnc.controllers.apci.sap._task import STRING_BYTES, Task, TaskStatus
 
 _UNKNOWN_ERROR = 1
