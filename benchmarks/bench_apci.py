@@ -73,7 +73,7 @@ def rate_polling(programs: Sequence[str], scans: int) -> float:
     tasks = BoardTasks(board)
     for number, text in enumerate(programs):
         tasks.load(sap.compile_program(text, task=number))
-        tasks.tasks.startcnct(number)
+        tasks.startcnct(number)
     fill(board, range(AXES))
     return scans * board.config.sample_time_s / run(board, scans)
 

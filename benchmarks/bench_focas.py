@@ -12,7 +12,7 @@ from pathlib import Path
 
 from _measure import Figure, at_least, at_most
 from _report import run_script
-from polycnc.servers.focas import Frame, FrameReader, FrameType, Request, write_requests
+from polycnc.controllers.fanuc.wire import Frame, FrameReader, FrameType, Request, write_requests
 
 PROGRAM = "O0815\nN10 G90 G1 F600 X-12.5\nN20 Y7.25\nN30 X0\nN40 Y0\nM30\n"
 TICKS = os.sysconf("SC_CLK_TCK")

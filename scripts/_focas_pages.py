@@ -1,17 +1,8 @@
 # ruff: noqa: E501
 """The reference page of the FOCAS server, made from its tables: sessions, commands, series, faults."""
 
-from polycnc.servers.focas import (
-    COMMANDS,
-    LAYOUTS,
-    PMC,
-    PROFILES,
-    TRANSITIONS,
-    WRITING,
-    Request,
-    State,
-    load_profile,
-)
+from polycnc.controllers.fanuc.wire import LAYOUTS, PMC, Request
+from polycnc.servers.focas import COMMANDS, PROFILES, TRANSITIONS, WRITING, State, load_profile
 from polycnc.servers.focas import known as known_command
 
 _HEAD = """# The FOCAS protocol as it is served

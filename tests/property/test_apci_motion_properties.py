@@ -15,7 +15,7 @@ import pytest
 from polycnc.controllers.apci.board._axis_commands import cl, clv, ol, ra, utrovr
 from polycnc.controllers.apci.board._jog_commands import ja, jhi, jhl, jr, js, ms
 from polycnc.controllers.apci.board._move_commands import Speeds, mca, mcr, mcr3d, mhr, mla, mlr
-from polycnc.controllers.apci.board._spool_commands import free_bytes, sdels, spd, ssf, ssms, sstps, sstvl
+from polycnc.controllers.apci.board._spool_commands import sdels, spd, ssf, ssms, sstps, sstvl
 from polycnc.controllers.apci.core._state import IDLE, MOVE, SPOOL_ENTRIES, TABLE, WAITING
 from support.apci_bits import Axst, ModeReg
 from support.apci_rig import SCAN_S, Rig
@@ -156,9 +156,7 @@ def consistent(rig: Rig) -> None:
             assert row["motion"] == MOVE
         if row["motion"] in (MOVE, TABLE) and not row["direct"]:
             assert queued[0] == row["entry"]
-        assert 145_000 - free_bytes(rig.board, i) == sum(
-            145 + 8 * int(state.entry[e]["points"]) for e in queued
-        )
+        assert 145_000 - rig.board.axes[i].lsm == sum(145 + 8 * int(state.entry[e]["points"]) for e in queued)
         assert row["pe"] == (
             not row["commanded"] and not row["running"] and (row["motion"] == IDLE or bool(row["past"]))
         )

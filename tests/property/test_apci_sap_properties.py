@@ -48,7 +48,7 @@ def integers(draw: st.DrawFn, depth: int = 4) -> tuple[str, int]:
 def test_integer_expressions_are_what_python_says(expression: tuple[str, int]) -> None:
     text, value = expression
     board = run_text(f"CI0 := {text};", 5)
-    assert board.tasks.error_text(0) == ""
+    assert board.tasks.each[0].error == ""
     assert board.ci(0) == value
 
 
@@ -120,7 +120,7 @@ def test_a_program_does_the_same_however_it_is_cut_into_scans(values: list[int],
         if not board.tasks.rdcncts(0).running:
             break
         board.scan += 1
-        board.tasks.run_scan(budget)
+        board.run_scan(budget)
     assert board.tasks.rdcncts(0)[:4] == (0, 0, 32768, 0)
     assert [board.ci(index) for index in range(1, len(values) + 1)] == sorted(values)
 

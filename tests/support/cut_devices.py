@@ -187,7 +187,7 @@ def _board(rng: random.Random, _folder: Path) -> Board:
             task=2,
         )
     )
-    tasks.tasks.startcnct(2)
+    tasks.startcnct(2)
     return made
 
 

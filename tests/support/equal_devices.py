@@ -43,7 +43,7 @@ def board() -> Iterator[Any]:
     tasks = BoardTasks(made)
     yield made
     tasks.load(compile_program(SAP, task=2))
-    tasks.tasks.startcnct(2)
+    tasks.startcnct(2)
     cl(made, (0, 1, 2))
     made.advance(3)
     for axis in made.axes:

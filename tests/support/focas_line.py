@@ -5,7 +5,7 @@ from __future__ import annotations
 import socket
 from pathlib import Path
 
-from polycnc.servers.focas import (
+from polycnc.controllers.fanuc.wire import (
     Frame,
     FrameReader,
     FrameType,

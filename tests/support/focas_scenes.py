@@ -10,20 +10,8 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from polycnc.controllers.fanuc import PowerMate
-from polycnc.servers.focas import (
-    PMC,
-    PROFILES,
-    Dissector,
-    FocasControl,
-    Frame,
-    FrameReader,
-    FrameType,
-    Request,
-    Session,
-    Value8,
-    load_profile,
-    write_requests,
-)
+from polycnc.controllers.fanuc.wire import PMC, Frame, FrameReader, FrameType, Request, Value8, write_requests
+from polycnc.servers.focas import PROFILES, Dissector, FocasControl, Session, load_profile
 
 GOLDEN = Path(__file__).parents[1] / "golden" / "focas"
 PROGRAM = b"O0815 (SLOW SQUARE)\nN10 G90 G1 G54 F600 X-12.5 S350 M3\nN20 Y7.25\nN30 X0\nM30\n"

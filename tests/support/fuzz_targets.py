@@ -169,7 +169,7 @@ def _tasks(content: bytes) -> None:
     board.tasks.startcnct(program.task)
     for _ in range(8):
         board.scan += 1
-        board.tasks.run_scan()
+        board.run_scan()
     board.tasks.rdcncts(program.task)
 
 

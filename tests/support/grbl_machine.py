@@ -20,9 +20,10 @@ class InTheLoop:
         self.control = control
         self.pace = Pace(WallClock(), rate)
 
-    def submit(self, command: Callable[[], Any], done: Callable[[Any], None]) -> None:
+    def submit(self, command: Callable[[], Any], done: Callable[[Any], None]) -> bool:
         self.catch_up()
         done(command())
+        return True
 
     def catch_up(self) -> None:
         due = self.pace.due(self.control.clock.cycle_s, 1000)

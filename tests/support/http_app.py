@@ -27,11 +27,7 @@ def served_machine(kind: str, machinery: Machinery) -> ServedMachine:
     made = KINDS[kind](machinery)
     served: ServedDevice[Any] = ServedDevice(made.device, made.find_control)
     keeper = Keeper(served, Still())
-    machine = ServedMachine(
-        "m", kind, made.device, served, keeper, made.find_control, made.own, made.programs, end=made.end,
-        parameters=made.parameters, variables=made.variables, signals=made.signals,
-        screen=made.screen, tasks=made.tasks, folder=made.folder,
-    )  # fmt: skip
+    machine = ServedMachine(**made.all(), name="m", kind=kind, served=served, keeper=keeper)
     keeper.start()
     return machine
 

@@ -33,7 +33,7 @@ class FakeBoard:
         if call.name == "azo":
             raise UsageError("no zero offsets here")
         if call.name == "rs":
-            self.tasks.halt_all()
+            self.tasks.halt()
         for axis in call.axes:
             self.ends[axis] = self.scan + self.move_scans
 
@@ -59,7 +59,12 @@ class FakeBoard:
         """Run the tasks for some scans."""
         for _ in range(scans):
             self.scan += 1
-            self.tasks.run_scan()
+            self.run_scan()
+
+    def run_scan(self, budget: int = 100) -> None:
+        """Give every task its turn in this scan."""
+        for task in self.tasks.each:
+            task.run(budget)
 
     def start(self, text: str, task: int = 0) -> None:
         """Compile a program, load it and start it."""

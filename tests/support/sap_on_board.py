@@ -32,14 +32,14 @@ class Sap:
         others = (AxisSetup(name=name, unit=unit, **each) for name, unit in zip(rest, units[1:], strict=True))
         self.board = Board(SystemFile(axis=(limited, *others)))
         self.board_tasks = BoardTasks(self.board)
-        self.tasks = self.board_tasks.tasks
+        self.tasks = self.board_tasks
 
     def run(self, text: str, scans: int = 2000) -> None:
         """Run a program to its end."""
         self.board_tasks.load(sap.compile_program(text))
         self.tasks.startcnct(0)
         self.board.advance(scans)
-        assert self.tasks.error_text(0) == ""
+        assert self.tasks.each[0].error == ""
         assert self.tasks.rdcncts(0).running == 0
 
     def cd(self, index: int) -> float:

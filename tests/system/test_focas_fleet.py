@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from polycnc.controllers.fanuc import PowerMate
-from polycnc.servers.focas import Frame, FrameType, Request, read_replies, write_requests
+from polycnc.controllers.fanuc.wire import Frame, FrameType, Request, read_replies, write_requests
 from support.command import polycnc
 from support.focas_line import Line, end, free_port, serve, values
 

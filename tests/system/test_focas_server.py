@@ -9,16 +9,8 @@ from collections.abc import Iterator
 
 import pytest
 
-from polycnc.servers.focas import (
-    PMC,
-    PROFILES,
-    Frame,
-    FrameType,
-    Request,
-    Value8,
-    load_profile,
-    read_status,
-)
+from polycnc.controllers.fanuc.wire import PMC, Frame, FrameType, Request, Value8, read_status
+from polycnc.servers.focas import PROFILES, load_profile
 from support import focas_line
 from support.command import COMMAND, environment
 from support.focas_line import end, serve, values

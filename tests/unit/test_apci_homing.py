@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from polycnc.controllers.apci.board._axis_commands import cl, ol, ra, shp, write_rp
+from polycnc.controllers.apci.board._axis_commands import cl, ol, ra, shp
 from polycnc.controllers.apci.board._jog_commands import ja, jhi, jhl, jhr, jr, js
 from polycnc.controllers.apci.board._move_commands import Speeds, mlr
 from polycnc.controllers.apci.core._latches import BY_STROBE
@@ -115,11 +115,11 @@ def test_machine_zero_and_what_ends_it(motor: str) -> None:
         command(rig.board, (0,))
         assert bool(rig.bits() & Axst.referenced) is (motor == "servo")
     shp(rig.board, 0, 5.0)
-    write_rp(rig.board, 0, 1.0)  # only with the loop open
+    rig.board.axes[0].rp = 1.0  # only with the loop open
     assert axis.rp == 5.0
     ol(rig.board, (0,))
     shp(rig.board, 0, 5.0)
-    write_rp(rig.board, 0, 1.0)
+    rig.board.axes[0].rp = 1.0
     assert axis.rp == pytest.approx(1.0)
     assert not rig.bits() & Axst.referenced
     shp(rig.board, 0, 5.0)

@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from polycnc.controllers.apci.board._axis_commands import cl, ol, ra, shp, write_mcp
+from polycnc.controllers.apci.board._axis_commands import cl, ol, ra, shp
 from polycnc.controllers.apci.board._jog_commands import ja, jr
 from polycnc.controllers.apci.board._move_commands import Speeds, mlr
-from polycnc.controllers.apci.board._spool_commands import moves_queued, ssms
+from polycnc.controllers.apci.board._spool_commands import ssms
 from polycnc.controllers.apci.core import _registers
 from support.apci_bits import Axst, ErrorReg
 from support.apci_rig import SCAN_S, Rig, scans_for
@@ -53,7 +53,7 @@ def test_smd_brakes_refuses_and_lets_out(sign: float, limit: float, bit: int) ->
     first = found[found > abs(limit)][0]
     assert rest * sign == pytest.approx(first + 50.0**2 / 400.0)
     assert rig.bits() & bit
-    assert moves_queued(rig.board, 0) == 0
+    assert rig.board.axes[0].MCiS == 0
     rig.scans_until_end()
     jr(rig.board, (0,), (sign * 5.0,))
     rig.scans_until_end()
@@ -186,10 +186,10 @@ def test_limit_switches(side: str, function: str, bit: int) -> None:
 def test_tom_also_takes_an_open_loop_command_away() -> None:
     rig = switch("R", "TOM")
     ol(rig.board, (0,))
-    write_mcp(rig.board, 0, 32767)
+    rig.board.axes[0].mcp = 32767
     rig.board.advance(1000)
     assert 20.0 <= rig.board.axes[0].rp < 21.0
-    write_mcp(rig.board, 0, -32767)
+    rig.board.axes[0].mcp = -32767
     rig.board.advance(10)
     assert rig.board.axes[0].rp < 20.0
 
@@ -310,5 +310,5 @@ def test_limits_of_the_motor_command_act_in_both_modes() -> None:
     assert axis.mcp == -round(10.0 / 200.0 * 32767) - 200
     ol(rig.board, (0,))
     for written, taken in ((30_000, 8192), (-30_000, -4096), (100, 100)):
-        write_mcp(rig.board, 0, written)
+        rig.board.axes[0].mcp = written
         assert axis.mcp == taken

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 
 import numpy as np
+import numpy.typing as npt
 import pytest
 
 from polycnc.controllers.apci.board._axis_commands import (
@@ -12,14 +13,13 @@ from polycnc.controllers.apci.board._axis_commands import (
     azo,
     cl,
     clv,
+    lprs,
     ol,
     ra,
     shp,
     szpa,
     szpr,
     utrovr,
-    write_dp,
-    write_mcp,
 )
 from polycnc.controllers.apci.board._jog_commands import ja, jr, js
 from polycnc.controllers.apci.board._move_commands import Speeds, mla, mlr
@@ -36,13 +36,13 @@ def test_loops_are_open_after_power_up_and_closing_does_not_jump() -> None:
     axis = rig.board.axes[0]
     assert not rig.bits() & Axst.cl
     assert axis.mcp == 0
-    write_mcp(rig.board, 0, 32767)  # 10 V: 200 mm/s
+    rig.board.axes[0].mcp = 32767  # 10 V: 200 mm/s
     rig.board.advance(100)
     assert axis.rv == pytest.approx(200.0)
     for command in (ja, jr):
         command(rig.board, (0,), (1.0,))
     mla(rig.board, (0,), (1.0,), Speeds(10.0, 10.0))
-    write_mcp(rig.board, 0, 0)
+    rig.board.axes[0].mcp = 0
     rig.board.advance(200)
     at = axis.rp
     assert at > 20.0  # none of them was carried out
@@ -51,7 +51,7 @@ def test_loops_are_open_after_power_up_and_closing_does_not_jump() -> None:
     assert axis.dp == axis.rp
     rig.board.advance(100)
     assert axis.rp == pytest.approx(at, abs=1e-9)
-    write_mcp(rig.board, 0, 5000)
+    rig.board.axes[0].mcp = 5000
     rig.board.advance(2)
     assert axis.mcp == 0  # the controller writes it
     ol(rig.board, (0,))
@@ -64,7 +64,7 @@ def test_motor_command_of_a_stepper_is_a_delay(kind: str, clock_hz: float) -> No
     rig = Rig(f'board_type = "{kind}"\n[[axis]]\nmotor = "stepper"\nslsp = 1000\ngf = 1\n', closed=False)
     axis = rig.board.axes[0]
     for counts in (999, 12_499, -999, 0):
-        write_mcp(rig.board, 0, counts)
+        rig.board.axes[0].mcp = counts
         assert axis.mcp == counts
         rig.board.advance(2)
         expected_hz = math.copysign(clock_hz / 2.0 / (abs(counts) + 1), counts) if counts else 0.0
@@ -72,7 +72,7 @@ def test_motor_command_of_a_stepper_is_a_delay(kind: str, clock_hz: float) -> No
         if kind == "APCI-8001":
             assert abs(expected_hz) == pytest.approx({999: 35_000.0, 12_499: 2800.0, 0: 0.0}[abs(counts)])
     for counts, taken in ((2_000_000, 1_048_574), (-2_000_000, -1_048_574)):
-        write_mcp(rig.board, 0, counts)
+        rig.board.axes[0].mcp = counts
         assert axis.mcp == taken
     cl(rig.board, (0,))
     rig.set_jog(jac=1000.0, jdec=1000.0, jvl=35.0)
@@ -106,7 +106,7 @@ def test_modes_that_part_1_only_names_are_kept_without_effect() -> None:
 def test_closing_the_loop_at_speed_goes_on_with_it(kind: str) -> None:
     rig = Rig(f'[[axis]]\nkp = 30\nkfcv = 1\n[axis.plant]\nkind = "{kind}"\n', closed=False)
     axis = rig.board.axes[0]
-    write_mcp(rig.board, 0, 8192)
+    rig.board.axes[0].mcp = 8192
     rig.board.advance(50)
     velocity, at = axis.rv, axis.rp
     assert velocity == pytest.approx(50.0, rel=1e-3)
@@ -133,11 +133,11 @@ def test_filter_coefficients_can_be_changed_on_the_way() -> None:
         axis.kp, axis.kfcv = kp, kfcv
         rig.board.update_filter(0)
         rig.board.advance(600)
-        assert axis.position_error == pytest.approx(error, abs=0.05)
+        assert axis.PosErr == pytest.approx(error, abs=0.05)
     axis.kfcv, axis.ki = 0.0, 600.0  # T_N = 0.1 s
     rig.board.update_filter(0)
     rig.board.advance(2000)
-    assert axis.position_error == pytest.approx(0.0, abs=1e-3)
+    assert axis.PosErr == pytest.approx(0.0, abs=1e-3)
 
 
 @pytest.mark.covers("apci.ctrl.kpl", "apci.ctrl.scantime")
@@ -147,7 +147,7 @@ def test_filter_lag(kpl: float, lag_s: float) -> None:
     axis = rig.board.axes[0]
     axis.kpl = kpl
     rig.board.update_filter(0)
-    write_dp(rig.board, 0, 1.0)
+    rig.board.axes[0].dp = 1.0
     rig.board.advance(1)
     # The error goes from 0 to 1 in a line over the scan; a lag T answers it with 1 - T/t (1 - exp(-t/T)).
     share = 1.0 - lag_s / SCAN_S * (1.0 - math.exp(-SCAN_S / lag_s)) if lag_s else 1.0
@@ -161,7 +161,7 @@ def test_monitors_of_the_position_error() -> None:
     rig.set_jog(jac=1000.0, jdec=1000.0)
     jr(rig.board, (0,), (50.0,))
     rig.board.advance(300)
-    assert axis.position_error == pytest.approx(50.0 / 30.0, rel=0.01)
+    assert axis.PosErr == pytest.approx(50.0 / 30.0, rel=0.01)
     assert not rig.bits() & (Axst.mpe | Axst.ip)
     axis.mpe, axis.ipw = 1.5, 5.0
     rig.board.advance(1)
@@ -298,7 +298,7 @@ def test_setpoint_can_be_put_where_the_axis_is() -> None:
     rig = Rig(LAG)
     axis = rig.board.axes[0]
     rig.board.kernel.servo.row[0]["blocked"] = 1
-    write_dp(rig.board, 0, 5.0)
+    rig.board.axes[0].dp = 5.0
     rig.board.advance(3)
     RPtoDP(rig.board, (0,))
     rig.board.advance(1)
@@ -317,7 +317,7 @@ def test_setpoint_can_be_put_where_the_axis_is() -> None:
     jr(rig.board, (0,), (5.0,))
     rig.scans_until_end()
     rig.board.advance(100)
-    lag = axis.position_error
+    lag = axis.PosErr
     assert lag == pytest.approx(20.0 / 30.0, rel=0.01)
     at = axis.rp
     RPtoDP(rig.board, (0,))  # at target velocity it corrects
@@ -345,25 +345,30 @@ def test_zero_offsets() -> None:
         assert axis.rp == rp
 
 
+def recorded(rig: Rig, i: int) -> npt.NDArray[np.float64]:
+    """Return what was recorded of an axis."""
+    return rig.board.state.analysis[: rig.board.state.board[0]["recorded"], i]
+
+
 @pytest.mark.covers("apci.lpr", "apci.lprs", "apci.LATCH_INFOS")
 def test_recording_for_the_analysis() -> None:
     rig = Rig("number_of_axes = 3\n" + LAG)
     axis = rig.board.axes[0]
-    rig.board.start_analysis((0,), every=5)
+    lprs(rig.board, (0,), every=5)
     jr(rig.board, (0,), (20.0,))
     expected = []
     for scan in range(1, 201):
         rig.board.advance(1)
         if scan % 5 == 0:
             expected.append((axis.dp, axis.rp, float(axis.servo["output"])))
-    found = rig.board.analysis(0)
+    found = recorded(rig, 0)
     assert found.shape == (40, 3)
     assert found == pytest.approx(np.array(expected))
-    rig.board.start_analysis((0, 1, 2))
+    lprs(rig.board, (0, 1, 2))
     rig.board.advance(10)
-    assert len(rig.board.analysis(2)) == 10
+    assert len(recorded(rig, 2)) == 10
     rig.board.advance(10_000)
-    assert len(rig.board.analysis(0)) == 4096  # full: it keeps what it has
+    assert len(recorded(rig, 0)) == 4096  # full: it keeps what it has
 
 
 @pytest.mark.filterwarnings("ignore:overflow encountered:RuntimeWarning")  # of NumPy, uncompiled

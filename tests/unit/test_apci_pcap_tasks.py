@@ -178,6 +178,11 @@ def test_common_buffers_are_copied_from_their_beginning(pc: Pc) -> None:
     sent = bytearray(range(250)) * 4
     assert pcap.wrcbcnct(pcap.CBCNCT(3, 1000, sent)) == 0
     assert pcap.wrcbcnct(pcap.CBCNCT(3, 2, bytearray(b"\xff\xfe"))) == 0
+    assert pcap.wrcbcnct(pcap.CBCNCT(1, 3, bytearray(b"abcdef"))) == 0
+    assert pc.board.variables.buffers[1][:5] == b"abc\0\0"
+    memory = bytearray(b"......")
+    assert pcap.rdcbcnct(pcap.CBCNCT(1, 4, memory)) == 0
+    assert memory == b"abc\0.."
     into = bytearray(1001)
     assert pcap.rdcbcnct(pcap.CBCNCT(3, 1000, into)) == 0
     assert into == b"\xff\xfe" + sent[2:] + b"\0"
@@ -186,9 +191,12 @@ def test_common_buffers_are_copied_from_their_beginning(pc: Pc) -> None:
     assert other == bytes(4)
     for function in (pcap.rdcbcnct, pcap.wrcbcnct):
         assert function(pcap.CBCNCT(4, 4, bytearray(4))) == 0x1
+        assert function(pcap.CBCNCT(-1, 1, bytearray(1))) == 0x1
+        assert function(pcap.CBCNCT(4, 10, bytearray(9))) == 0x5
         assert function(pcap.CBCNCT(0, 1001, bytearray(2000))) == 0x2
         assert function(pcap.CBCNCT(0, 4, bytearray(3))) == 0x4
         assert function(pcap.CBCNCT(-1, 1001, bytearray())) == 0x3
+    assert pc.board.variables.buffers[0] == bytearray(1000)
     assert pcap.rdcbcnct(pcap.CBCNCT(3, 4, into)) == 0
     assert into[:4] == b"\xff\xfe\x02\x03"
 

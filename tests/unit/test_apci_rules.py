@@ -106,16 +106,16 @@ def test_axes_may_be_called_by_their_number_in_programs() -> None:
     board = Board(parse_system_file('[[axis]]\nname = "X"\n[[axis]]\nname = "A1"\n[[axis]]\nname = "Z"\n'))
     tasks = BoardTasks(board)
     tasks.load(sap.compile_program("BEGIN A3.jvl := 33; a1.jvl := 22; x.jvl := 11; A2.jac := 44 END."))
-    tasks.tasks.startcnct(0)
+    tasks.startcnct(0)
     board.advance(5)
-    assert tasks.tasks.error_text(0) == ""
+    assert tasks.each[0].error == ""
     # A1 is the name of the second axis here; A2, which nobody is called, is the second as well.
     assert [axis.jvl for axis in board.axes] == [11, 22, 33]
     assert board.axes[1].jac == 44
     tasks.load(sap.compile_program("BEGIN A4.jvl := 1 END."))
-    tasks.tasks.startcnct(0)
+    tasks.startcnct(0)
     board.advance(2)
-    assert "A4" in tasks.tasks.error_text(0)
+    assert "A4" in tasks.each[0].error
 
 
 def test_a_board_has_a_serial_number_of_its_own() -> None:
@@ -227,7 +227,7 @@ def test_more_than_the_drive_can_do_is_commanded_all_the_same_and_shows_as_posit
         )
         assert rig.board.errorreg == 0
         rows = rig.board.kernel.recorder
-        worst[jvl] = abs(rig.board.axes[0].position_error)
+        worst[jvl] = abs(rig.board.axes[0].PosErr)
         assert rows.filled[0] > 0
     assert worst[90.0] > 10.0 > 2.0 > worst[40.0]
 
@@ -333,13 +333,13 @@ def test_tasks_share_the_work_and_control_each_other() -> None:
     for number, text in enumerate(programs):
         tasks.load(sap.compile_program(text, task=number))
         if number != 2:
-            tasks.tasks.startcnct(number)
+            tasks.startcnct(number)
     board.advance(4000)
-    assert [tasks.tasks.error_text(number) for number in range(4)] == [""] * 4
+    assert [tasks.each[number].error for number in range(4)] == [""] * 4
     ci = board.state.ci
     assert (ci[3], ci[4], ci[6]) == (5, 1, 0)
     assert 12.5 < board.axes[0].rp < 20.0
-    assert tasks.tasks.rdcncts(2).running & 1 == 0
+    assert tasks.rdcncts(2).running & 1 == 0
     board.set_input(2, True)
     board.advance(5)
     assert (ci[6], board.outputs) == (77, 8)

@@ -9,6 +9,7 @@ from pathlib import Path
 import pytest
 
 from polycnc.controllers.apci import sap
+from polycnc.controllers.apci.board._system_file import SystemFile
 from polycnc.controllers.apci.sap._cnc_file import MAX_BYTES
 from support.command import polycnc
 from support.pages import REPOSITORY
@@ -46,7 +47,7 @@ def test_a_cnc_file_holds_the_task_and_the_whole_program() -> None:
     assert board.tasks.rdcncts(2).running == 0
     board.tasks.startcnct(2)
     board.advance(20)
-    assert board.tasks.error_text(2) == ""
+    assert board.tasks.each[2].error == ""
     assert board.ci(9) == count  # ... and overwrites its program
     assert board.system["cd", 0] == pytest.approx(1.3)
     assert [call.numbers for call in board.calls] == [(90.0,), (2, (0.0, pytest.approx(1.3)), 7)]
@@ -151,4 +152,4 @@ def test_the_reference_names_every_word_of_the_board_and_every_error() -> None:
     assert {*sap.COMMANDS, *sap.AXIS_QUALIFIERS, *sap.SYSTEM_VARIABLES} <= words
     for number, text in sap.FAULTS.items():
         assert f"| {number} | {text}" in page
-    assert f"at most {sap.BUDGET} instructions" in page
+    assert f"at most {SystemFile().rulings.instructions_per_scan} instructions" in page

@@ -12,7 +12,7 @@ from support.sap_board import run_text
 def results(text: str, count: int = 1) -> list[int]:
     """Run a program and return CI0, CI1 ..."""
     board = run_text(text, 500)
-    assert board.tasks.error_text(0) == ""
+    assert board.tasks.each[0].error == ""
     assert board.tasks.rdcncts(0).running == 0
     return [board.ci(index) for index in range(count)]
 
@@ -20,7 +20,7 @@ def results(text: str, count: int = 1) -> list[int]:
 def written(expression: str) -> str:
     """Return what WRITE makes of an expression."""
     board = run_text(f"WRITE ({expression});")
-    assert board.tasks.error_text(0) == ""
+    assert board.tasks.each[0].error == ""
     return board.tasks.gettskstr(0)
 
 
@@ -212,7 +212,7 @@ def test_a_runtime_error_stops_the_task_with_number_and_line(statement: str, num
     assert status.errline == (2 if number == 5 else 5)
     assert status.running == 0
     assert board.ci(0) == 1
-    assert board.tasks.error_text(0) != ""
+    assert board.tasks.each[0].error != ""
     board.tasks.contcnct(0)
     board.advance(10)
     assert board.ci(0) == 1  # not to be continued
@@ -221,7 +221,7 @@ def test_a_runtime_error_stops_the_task_with_number_and_line(statement: str, num
 
 
 def test_an_error_about_axes_names_them() -> None:
-    assert run_text("js (A1, Q, W);").tasks.error_text(0) == "the board has no axis of this name: Q, W"
+    assert run_text("js (A1, Q, W);").tasks.each[0].error == "the board has no axis of this name: Q, W"
     assert run_text("wt (-1e300 * 1e300); CI0 := 1;").ci(0) == 1  # no wait at all
 
 

@@ -81,8 +81,8 @@ def picture(board: Board, tasks: BoardTasks) -> tuple[object, ...]:
     state = board.state
     arrays = (state.axis, state.ci, state.cd, board.kernel.servo.actual, board.kernel.base)
     seen: list[object] = [array.tobytes() for array in arrays]
-    for number, task in enumerate(tasks.tasks.each):
-        seen.append(tasks.tasks.rdcncts(number))
+    for number, task in enumerate(tasks.each):
+        seen.append(tasks.rdcncts(number))
         task.reclaim_state()
         seen.append((task.next, task.base, repr(task.stack), repr(task.memory), task.frames, task.waiting))
     return tuple(seen)
@@ -106,9 +106,9 @@ class Outside:
         elif self.what == "jog":
             jr(board, (0,), (self.way,))
         elif self.what == "buffer":
-            tasks.tasks.wrcbcnct(self.value % 4, 16, BUFFER)
+            board.variables.buffers[self.value % 4][:16] = BUFFER
         else:
-            control = tasks.tasks.stopcnct if self.value % 2 else tasks.tasks.contcnct
+            control = tasks.stopcnct if self.value % 2 else tasks.contcnct
             control(self.value // 2)
 
 
@@ -136,7 +136,7 @@ def test_polling_tasks_do_bit_for_bit_what_every_turn_would_do(
         board.axes[0].jac, board.axes[0].jvl = 60.0, 9.0
         for number, name in enumerate(names):
             tasks.load(sap.compile_program(PROGRAMS[name], task=number))
-            tasks.tasks.startcnct(number)
+            tasks.startcnct(number)
         seen = []
         for each in _script(seed):
             board.advance(each.after_scans)
@@ -168,7 +168,7 @@ def test_a_task_that_polls_has_its_turns_in_the_compiled_scan(
     board, tasks = rig(True, monkeypatch)
     for number in range(4):
         tasks.load(sap.compile_program(PROGRAMS[name], task=number))
-        tasks.tasks.startcnct(number)
+        tasks.startcnct(number)
     cl(board, (0,))
     board.axes[0].jac, board.axes[0].jvl = 60.0, 9.0
     board.advance(100)
@@ -185,7 +185,7 @@ def test_a_position_that_is_polled_ends_the_scan_in_which_it_is_reached() -> Non
     cl(board, (0,))
     board.axes[0].jac, board.axes[0].jvl = 60.0, 9.0
     tasks.load(sap.compile_program("BEGIN REPEAT UNTIL A1.rp >= 1.5; CD0 := A1.rp; js (A1) END."))
-    tasks.tasks.startcnct(0)
+    tasks.startcnct(0)
     board.advance(50)
     jr(board, (0,), (7.0,))
     board.advance(2000)
@@ -205,7 +205,7 @@ def test_a_task_stopped_by_another_one_stands_where_its_last_turn_has_left_it(
         )
         tasks.load(sap.compile_program("BEGIN wt (250.0); stopcnct (0); CI1 := 1 END.", task=1))
         for number in range(2):
-            tasks.tasks.startcnct(number)
+            tasks.startcnct(number)
         board.advance(400)
         assert board.state.ci[1] == 1
         seen.append(picture(board, tasks))
@@ -220,7 +220,7 @@ def test_a_snapshot_of_a_polling_board_goes_on_as_the_board_does(
     for fast in (True, False):
         board, tasks = rig(fast, monkeypatch)
         tasks.load(sap.compile_program(PROGRAMS[name]))
-        tasks.tasks.startcnct(0)
+        tasks.startcnct(0)
         board.advance(137)
         kept = board.snapshot()
         board.advance(61)
@@ -243,7 +243,7 @@ def test_a_board_may_run_other_numbers_of_instructions_in_a_scan(instructions: i
     board = Board(parse_system_file(f"[rulings]\ninstructions_per_scan = {instructions}\n"))
     tasks = BoardTasks(board)
     tasks.load(sap.compile_program("BEGIN WHILE TRUE DO CI3 := CI3 + 1 END."))
-    tasks.tasks.startcnct(0)
+    tasks.startcnct(0)
     board.advance(60)
     # a pass: the condition, the jump out, three and a store, the jump back
     assert int(board.state.ci[3]) == pytest.approx(60 * instructions / 7, abs=1)

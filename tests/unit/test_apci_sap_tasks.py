@@ -7,6 +7,7 @@ import struct
 import pytest
 
 from polycnc.controllers.apci import sap
+from polycnc.controllers.apci.board._system_file import SystemFile
 from support.sap_board import FakeBoard, run_text
 
 COUNT_FOREVER = "WHILE TRUE DO CI0 := CI0 + 1;"
@@ -236,9 +237,9 @@ def test_a_task_gets_its_budget_and_no_more() -> None:
     board = FakeBoard()
     board.start(COUNT_FOREVER)
     for _ in range(3):
-        board.tasks.run_scan(budget=6)  # TRUE, IF, CI0, 1, +, :=, and the jump back in the next one
+        board.run_scan(budget=6)  # TRUE, IF, CI0, 1, +, :=, and the jump back in the next one
     assert board.ci(0) == 2
-    assert sap.BUDGET == 100
+    assert SystemFile().rulings.instructions_per_scan == 100
 
 
 # Events
@@ -400,27 +401,3 @@ def test_a_task_reads_and_writes_its_own_common_buffer() -> None:
     assert [any(buffer) for buffer in board.buffers] == [False, False, True, False]
     assert run_text("CI0 := RDCBB (1000);").tasks.rdcncts(0).errnum == 8
     assert run_text("WRCBD (993, 0);").tasks.rdcncts(0).errnum == 8
-
-
-@pytest.mark.covers(
-    "apci.rdcbcnct", "apci.wrcbcnct", "apci.cbcnct.ret.bit0", "apci.cbcnct.ret.bit1", "apci.cbcnct.ret.bit2"
-)
-def test_the_pc_reads_and_writes_common_buffers_from_their_beginning() -> None:
-    board = FakeBoard()
-    tasks = board.tasks
-    assert tasks.wrcbcnct(1, 3, b"abcdef") == 0
-    assert board.buffers[1][:5] == b"abc\0\0"
-    memory = bytearray(b"......")
-    assert tasks.rdcbcnct(1, 4, memory) == 0
-    assert memory == b"abc\0.."
-    assert tasks.wrcbcnct(3, 1000, bytes(range(250)) * 4) == 0
-    whole = bytearray(1000)
-    assert tasks.rdcbcnct(3, 1000, whole) == 0
-    assert whole == bytes(range(250)) * 4
-    for call in (tasks.rdcbcnct, tasks.wrcbcnct):
-        assert call(4, 1, bytearray(1)) == 0b001
-        assert call(-1, 1, bytearray(1)) == 0b001
-        assert call(0, 1001, bytearray(2000)) == 0b010
-        assert call(0, 10, bytearray(9)) == 0b100
-        assert call(4, 10, bytearray(9)) == 0b101
-    assert board.buffers[0] == bytearray(1000)

@@ -161,7 +161,7 @@ def run(seed: int, programs: list[str], away: bool, monkeypatch: pytest.MonkeyPa
     board.sysvardbl[:8] = [0.5 * n - 1.25 for n in range(8)]
     for number, text in enumerate(programs):
         tasks.load(sap.compile_program(text, task=number))
-        tasks.tasks.startcnct(number)
+        tasks.startcnct(number)
     rng = random.Random(seed)
     seen: list[object] = []
     for _ in range(14):
@@ -174,8 +174,8 @@ def run(seed: int, programs: list[str], away: bool, monkeypatch: pytest.MonkeyPa
             board.state.board,
         )
         seen.append([array.tobytes() for array in arrays])
-        seen.append([tasks.tasks.rdcncts(number) for number in range(4)])
-        seen.append([tasks.tasks.error_text(number) for number in range(4)])
+        seen.append([tasks.rdcncts(number) for number in range(4)])
+        seen.append([tasks.each[number].error for number in range(4)])
         if rng.random() < 0.3:
             seen.append(repr(tasks.save()))
         match rng.randrange(6):
@@ -185,13 +185,13 @@ def run(seed: int, programs: list[str], away: bool, monkeypatch: pytest.MonkeyPa
                 jr(board, (0,), (rng.uniform(-3.0, 5.0),))
             case 3:
                 board.set_input(3, rng.random() < 0.5)
-                tasks.tasks.wrcbcnct(rng.randrange(4), 24, rng.randbytes(24))
+                board.variables.buffers[rng.randrange(4)][:24] = rng.randbytes(24)
             case 4:
                 mlr(board, (0, 1), (rng.uniform(-1.0, 1.0), 0.75), Speeds(40.0, 5.0, 0.0), spool=True)
                 ssms(board, (0, 1))
             case 5:
                 number = rng.randrange(4)
-                rng.choice((tasks.tasks.stopcnct, tasks.tasks.contcnct, tasks.tasks.startcnct))(number)
+                rng.choice((tasks.stopcnct, tasks.contcnct, tasks.startcnct))(number)
     seen.append(repr(tasks.save()))
     return seen
 
@@ -212,9 +212,9 @@ def test_a_program_that_only_changes_common_variables_needs_no_python(
     board = Board(parse_system_file(TWO_AXES))
     tasks = BoardTasks(board)
     tasks.load(sap.compile_program("BEGIN WHILE TRUE DO BEGIN CI3 := CI3 + 7; CD5 := CD5 + 0.25 END END."))
-    tasks.tasks.startcnct(0)
+    tasks.startcnct(0)
     board.advance(1)
-    monkeypatch.setattr(tasks.tasks.each[0], "run", None)
+    monkeypatch.setattr(tasks.each[0], "run", None)
     board.advance(1300)
     passes = 1301 * 100 / 11  # the condition and its jump, four and four for the sums, the jump back
     assert int(board.state.ci[3]) == pytest.approx(7 * passes, abs=7)
@@ -230,9 +230,9 @@ def test_a_program_too_large_for_the_compiled_scan_runs_all_the_same() -> None:
             "wt (256.0) END; CI3 := a[4900] + a[1400] END."
         )
     )
-    tasks.tasks.startcnct(0)
+    tasks.startcnct(0)
     board.advance(1500)
-    assert tasks.tasks.error_text(0) == ""
+    assert tasks.each[0].error == ""
     assert int(board.state.ci[3]) == 7 + 2
 
 
@@ -254,12 +254,12 @@ def test_an_error_in_the_compiled_scan_stops_the_task_where_it_is(text: str, fau
     board = Board(parse_system_file(TWO_AXES))
     tasks = BoardTasks(board)
     tasks.load(sap.compile_program(f"BEGIN\nREPEAT UNTIL CI9 = 4;\n{text};\nCI5 := 3\nEND."))
-    tasks.tasks.startcnct(0)
+    tasks.startcnct(0)
     board.state.ci[3], board.state.cd[3] = 25, 4.5
     board.advance(50)
     board.state.ci[9] = 4
     board.advance(20)
-    status = tasks.tasks.rdcncts(0)
+    status = tasks.rdcncts(0)
     if fault == 2 and "vardbl" in text:
         fault = status.errnum
         assert fault in (2, 7)  # refused by the board

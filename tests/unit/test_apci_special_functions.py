@@ -6,7 +6,7 @@ import pytest
 
 from polycnc.controllers.apci.board._axis_commands import cl, ol
 from polycnc.controllers.apci.board._move_commands import Speeds, mlr
-from polycnc.controllers.apci.board._spool_commands import moves_queued, ssf, ssms
+from polycnc.controllers.apci.board._spool_commands import ssf, ssms
 from support.apci_bits import Axst, ErrorReg
 from support.apci_rig import SCAN_S, Rig
 
@@ -219,7 +219,7 @@ def test_target_velocity_of_the_last_move_is_taken_away() -> None:
     rig = Rig()
     mlr(rig.board, (0, 1), (30.0, 0.0), GOES_ON, spool=True)
     ssf(rig.board, 0, 2001, 0)
-    assert moves_queued(rig.board, 0) == 1
+    assert rig.board.axes[0].MCiS == 1
     ssf(rig.board, 0, 1003, 20 * 100)
     ssms(rig.board, (0, 1))
     rig.board.advance(1000)

@@ -13,8 +13,6 @@ from polycnc.controllers.apci.board._board import Board
 from polycnc.controllers.apci.board._jog_commands import ja, jr, js, ms
 from polycnc.controllers.apci.board._move_commands import Speeds, mla, mlr
 from polycnc.controllers.apci.board._spool_commands import (
-    free_bytes,
-    moves_queued,
     sdels,
     spd,
     ssf,
@@ -59,40 +57,40 @@ def test_queue_is_run_back_to_back_and_ends_in_direct_mode() -> None:
     assert rig.board.axes[0].dp == 40.0
     rig.board.advance(1)
     assert rig.board.axes[0].dp > 40.0
-    assert moves_queued(rig.board, 0) == 0
+    assert rig.board.axes[0].MCiS == 0
 
 
 @pytest.mark.covers("apci.mode.spool", "apci.const.spoolmem", "apci.ErrorReg.4.errSpoolerOverrun")
 def test_memory_shrinks_with_entries_and_grows_with_execution() -> None:
     rig = Rig()
-    empty = free_bytes(rig.board, 0)
+    empty = rig.board.axes[0].lsm
     assert empty == 145_000
     free = rig.free_entries()
     three_lines(rig)
-    assert free_bytes(rig.board, 0) == free_bytes(rig.board, 1) < empty
-    assert free_bytes(rig.board, 2) == empty
-    assert moves_queued(rig.board, 0) == 3
+    assert rig.board.axes[0].lsm == rig.board.axes[1].lsm < empty
+    assert rig.board.axes[2].lsm == empty
+    assert rig.board.axes[0].MCiS == 3
     ssms(rig.board, (0, 1))
     rig.board.advance(scans_for(0.5))
-    assert moves_queued(rig.board, 0) == 2
+    assert rig.board.axes[0].MCiS == 2
     mlr(rig.board, (0, 1), (1.0, 0.0), SLOW, spool=True)  # while it runs
     rig.scans_until_end()
     assert rig.board.axes[0].rp == 41.0
-    assert free_bytes(rig.board, 0) == empty
+    assert rig.board.axes[0].lsm == empty
     assert rig.free_entries() == free
     for _ in range(1000):
         mlr(rig.board, (0,), (1.0,), SLOW, spool=True)
     assert rig.board.errorreg == 0
     mlr(rig.board, (0,), (1.0,), SLOW, spool=True)
     assert rig.board.errorreg == ErrorReg.errSpoolerOverrun
-    assert moves_queued(rig.board, 0) == 1000
+    assert rig.board.axes[0].MCiS == 1000
 
 
 @pytest.mark.covers("apci.mode.spool.conditions", "apci.ssms")
 def test_start_needs_closed_loops_and_rest() -> None:
     rig = Rig(closed=False)
     mlr(rig.board, (0,), (10.0,), SLOW, spool=True)
-    assert moves_queued(rig.board, 0) == 0
+    assert rig.board.axes[0].MCiS == 0
     cl(rig.board, rig.all)
     rig.set_jog(jtvl=5.0)
     jr(rig.board, (0,), (1.0,))
@@ -170,10 +168,10 @@ def test_what_empties_the_spooler(name: str, command: Callable[[Board, tuple[int
         command(rig.board, (0, 1))
         rig.board.advance(LATENCY + 1)
         runs_on = running and name in ("sdels", "ms")  # to the end of what it does, or on its path to rest
-        assert moves_queued(rig.board, 0) == runs_on
+        assert rig.board.axes[0].MCiS == runs_on
         rig.board.set_input(1, False)
         rig.scans_until_end()
-        assert moves_queued(rig.board, 0) == 0
+        assert rig.board.axes[0].MCiS == 0
         assert rig.free_entries() == free
         assert rig.bits() & Axst.pe
         if name == "sdels" and running:
@@ -193,7 +191,7 @@ def test_pause_finishes_what_runs_and_keeps_the_rest() -> None:
     sstps(rig.board, (0,))
     rig.scans_until_end()
     assert rig.board.axes[0].rp == 10.0
-    assert moves_queued(rig.board, 0) == 1
+    assert rig.board.axes[0].MCiS == 1
     rig.board.advance(100)
     assert rig.board.axes[0].rp == 10.0
     ssms(rig.board, (0,))
@@ -212,7 +210,7 @@ def test_pause_in_a_wait_lets_the_wait_end() -> None:
     assert not rig.bits() & Axst.pe
     rig.board.advance(20)
     assert rig.bits() & Axst.pe
-    assert moves_queued(rig.board, 0) == 1
+    assert rig.board.axes[0].MCiS == 1
     ssms(rig.board, (0,))
     rig.scans_until_end()
     assert rig.board.axes[0].rp == 1.0
@@ -305,18 +303,18 @@ def test_a_command_reaches_the_spooler_while_a_limit_brakes_the_axis() -> None:
     free = rig.free_entries()
     mlr(rig.board, (0, 1), (1.0, 1.0), SLOW, spool=True)
     assert rig.board.errorreg == ErrorReg.SpoolerLoadError
-    assert moves_queued(rig.board, 1) == 0
+    assert rig.board.axes[1].MCiS == 0
     assert rig.free_entries() == free
 
 
 @pytest.mark.covers("apci.spd", "apci.spda", "apci.spdr", "apci.var.PcapIndex", "apci.rdPcapIndex")
 def test_tables_give_one_setpoint_a_scan() -> None:
     rig = Rig()
-    free = free_bytes(rig.board, 0)
+    free = rig.board.axes[0].lsm
     points = [0.01, 0.03, 0.06, 0.08, 0.09]
     spd(rig.board, 0, points, index=100)
     spd(rig.board, 1, [0.01, 0.02, 0.03, 0.02, 0.01], relative=True)
-    assert free_bytes(rig.board, 0) < free
+    assert rig.board.axes[0].lsm < free
     ssms(rig.board, (0, 1))
     found = []
     for _ in points:
@@ -329,7 +327,7 @@ def test_tables_give_one_setpoint_a_scan() -> None:
     assert rig.bits() & Axst.pe
     assert rig.board.axes[0].dp == 0.09
     assert rig.setpoints(1)[-6:] == pytest.approx([0.01, 0.03, 0.06, 0.08, 0.09, 0.09])
-    assert free_bytes(rig.board, 0) == free
+    assert rig.board.axes[0].lsm == free
     mlr(rig.board, (0,), (1.0,), SLOW, spool=True)
     spd(rig.board, 0, [1.1, 1.2], index=7)
     mlr(rig.board, (0,), (1.0,), SLOW, spool=True, index=42)
@@ -358,11 +356,11 @@ def test_table_sizes_and_memory() -> None:
     rig = Rig(keep=50_000)
     for size in (0, 1001):
         spd(rig.board, 0, [0.0] * size)
-    assert moves_queued(rig.board, 0) == 0
+    assert rig.board.axes[0].MCiS == 0
     full = [k * 1e-6 for k in range(1000)]
     for count in range(30):
         spd(rig.board, 0, [count * 1e-3 + value for value in full])
-    queued = moves_queued(rig.board, 0)
+    queued = rig.board.axes[0].MCiS
     assert queued == 145_000 // (145 + 8000)
     assert rig.board.errorreg == ErrorReg.errSpoolerOverrun
     rig.forget()
@@ -477,7 +475,7 @@ def test_a_start_while_the_last_entry_before_a_pause_still_runs_undoes_the_pause
     ssms(rig.board, (0, 2))
     rig.scans_until_end()
     assert (rig.board.axes[0].rp, rig.board.axes[2].rp) == (15.0, 30.0)
-    assert (moves_queued(rig.board, 0), rig.board.errorreg) == (0, 0)
+    assert (rig.board.axes[0].MCiS, rig.board.errorreg) == (0, 0)
     assert not rig.bits() & Axst.saf
 
 
@@ -507,7 +505,7 @@ def test_a_contour_longer_than_the_spooler_runs_without_a_break_while_it_is_refi
     total, sent, step = 1200, 0, 0.125
     rates: list[float] = []
     while sent < total:
-        while sent < total and free_bytes(rig.board, 0) > 130_000:
+        while sent < total and rig.board.axes[0].lsm > 130_000:
             last = sent == total - 1
             mlr(rig.board, (0,), (step,), SLOW if last else GOES_ON, spool=True)
             sent += 1

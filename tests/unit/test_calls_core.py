@@ -264,7 +264,7 @@ def _garbage(seed: int, rounds: int) -> None:
         client.receive(bytes(bad[:cut]))
         client.receive(dice.randbytes(dice.randrange(90)))
         if client.caller is not None:
-            LIBRARIES["fanuc"].end(client.caller.session)
+            client.caller.session.detach()
     rig.client.receive(hello() + OPEN)
     assert [code for _, code, _ in answers(rig.client.receive(WRITE + READ))] == [0, 0]
 

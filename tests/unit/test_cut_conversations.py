@@ -10,8 +10,8 @@ from collections.abc import Iterable
 
 import pytest
 
+from polycnc.controllers.fanuc.wire import Frame, FrameType, Request, write_requests
 from polycnc.servers.calls import LIBRARIES
-from polycnc.servers.focas import Frame, FrameType, Request, write_requests
 from polycnc.servers.machines import Wanted
 from polycnc.servers.process import DOORS, Machinery
 from support.http_app import served_machine

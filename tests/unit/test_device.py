@@ -65,7 +65,7 @@ def board_with_tasks() -> Board:
     made = moving_board()
     tasks = BoardTasks(made)
     tasks.load(compile_program(SAP, task=2))
-    tasks.tasks.startcnct(2)
+    tasks.startcnct(2)
     return made
 
 

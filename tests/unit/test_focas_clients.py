@@ -7,20 +7,17 @@ import struct
 import pytest
 
 from polycnc.controllers.fanuc import PowerMate
-from polycnc.servers.focas import (
-    PROFILES,
-    FocasControl,
+from polycnc.controllers.fanuc.wire import (
     Frame,
     FrameReader,
     FrameType,
     Reply,
     Request,
-    Session,
     Value8,
-    load_profile,
     read_replies,
     write_requests,
 )
+from polycnc.servers.focas import PROFILES, FocasControl, Session, load_profile
 from support.focas_scenes import ALL, open_session, r
 
 LATER = ("16i", "0i-d", "31i")

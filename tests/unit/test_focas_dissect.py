@@ -11,21 +11,9 @@ from collections.abc import Iterator
 
 import pytest
 
+from polycnc.controllers.fanuc.wire import PMC, Frame, FrameType, Request, Value8, status_body, write_requests
 from polycnc.errors import UsageError
-from polycnc.servers.focas import (
-    PMC,
-    PROFILES,
-    Dissector,
-    Frame,
-    FrameType,
-    Request,
-    Value8,
-    dissect,
-    explain_capture,
-    from_hex,
-    status_body,
-    write_requests,
-)
+from polycnc.servers.focas import PROFILES, Dissector, dissect, explain_capture, from_hex
 from support.focas_scenes import SCENES, open_session, scene_control
 
 _LINE = re.compile(r"  ([0-9a-f]{4})  ((?:[0-9a-f]{2} ?)+)")

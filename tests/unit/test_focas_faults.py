@@ -10,6 +10,14 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from polycnc.controllers.fanuc import PowerMate, read_state
+from polycnc.controllers.fanuc.wire import (
+    Frame,
+    FrameReader,
+    FrameType,
+    Request,
+    read_replies,
+    write_requests,
+)
 from polycnc.errors import UsageError
 from polycnc.servers.focas import (
     Ending,
@@ -17,16 +25,10 @@ from polycnc.servers.focas import (
     FaultKind,
     Faults,
     FocasControl,
-    Frame,
-    FrameReader,
-    FrameType,
-    Request,
     ServedControl,
     Session,
     load_faults,
     load_profile,
-    read_replies,
-    write_requests,
 )
 
 OPEN = bytes(Frame(FrameType.OPEN, b"\0\2"))

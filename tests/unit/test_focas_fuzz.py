@@ -11,22 +11,16 @@ from typing import Any
 import pytest
 
 from polycnc.controllers.fanuc import PowerMate
-from polycnc.machine import copied
-from polycnc.servers.focas import (
-    COMMANDS,
-    PROFILES,
-    WRITING,
-    FocasControl,
+from polycnc.controllers.fanuc.wire import (
     Frame,
     FrameReader,
     FrameType,
     Request,
-    Session,
-    State,
-    load_profile,
     read_replies,
     write_requests,
 )
+from polycnc.machine import copied
+from polycnc.servers.focas import COMMANDS, PROFILES, WRITING, FocasControl, Session, State, load_profile
 
 PROGRAM = b"O0815 (SQUARE)\nN10 G90 G1 F600 X-12.5\nN20 Y7.25\nM30\n"
 ORDINARY, LONG = 10_000, 1_000_000

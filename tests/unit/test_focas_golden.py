@@ -6,23 +6,18 @@ import functools
 
 import pytest
 
-from polycnc.servers.focas import (
-    COMMANDS,
+from polycnc.controllers.fanuc.wire import (
     LAYOUTS,
-    PROFILES,
-    WRITING,
     Frame,
     FrameReader,
     FrameType,
     Reply,
     Request,
-    Session,
-    from_hex,
-    load_profile,
     read_replies,
     read_requests,
     write_requests,
 )
+from polycnc.servers.focas import COMMANDS, PROFILES, WRITING, Session, from_hex, load_profile
 from support.focas_scenes import ALL, GOLDEN, SCENES, open_session, path, r, render, scene_control
 
 

@@ -13,7 +13,7 @@ from collections.abc import Awaitable, Callable
 import pytest
 
 from polycnc.controllers.fanuc import PowerMate
-from polycnc.controllers.fanuc.wire import status_body
+from polycnc.controllers.fanuc.wire import Frame, FrameReader, FrameType, Request, status_body, write_requests
 from polycnc.machine import Wall
 from polycnc.servers.focas import (
     COMMANDS,
@@ -21,15 +21,10 @@ from polycnc.servers.focas import (
     WRITING,
     FocasControl,
     FocasServer,
-    Frame,
-    FrameReader,
-    FrameType,
-    Keeper,
-    Request,
     ServedControl,
     load_profile,
-    write_requests,
 )
+from polycnc.servers.machines import Keeper
 from support.focas_scenes import SCENES, scene_control
 
 PROGRAM = "O1234\n" + "N10G1X-12.375F600\n" * 150 + "M30\n"

@@ -9,21 +9,14 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from polycnc.errors import ProtocolError
-from polycnc.servers.focas import (
+from polycnc.controllers.fanuc.wire import (
     PMC,
-    TRANSITIONS,
     VACANT,
-    Ending,
     Frame,
     FrameReader,
     FrameType,
-    Plan,
     Reply,
     Request,
-    Session,
-    State,
-    Status,
     Value8,
     read_replies,
     read_requests,
@@ -33,6 +26,8 @@ from polycnc.servers.focas import (
     write_replies,
     write_requests,
 )
+from polycnc.errors import ProtocolError
+from polycnc.servers.focas import TRANSITIONS, Ending, Plan, Session, State, Status
 
 OPEN_TRANSFER, OPEN_COMMAND = (bytes(Frame(FrameType.OPEN, bytes((0, n)))) for n in (1, 2))
 CLOSE = bytes(Frame(FrameType.CLOSE))

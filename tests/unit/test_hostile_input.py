@@ -160,7 +160,7 @@ def test_forged_instructions_end_their_task_and_nothing_else() -> None:
             board.tasks.startcnct(0)
             for _ in range(12):
                 board.scan += 1
-                board.tasks.run_scan()
+                board.run_scan()
             ended.add(board.tasks.rdcncts(0).errnum)
     assert refused > 10
     assert {0, 10} <= ended <= {0, *sap.FAULTS}
@@ -175,10 +175,10 @@ def test_a_condition_without_end_ends_its_task() -> None:
     body["code"][condition] = ["jump", condition, 3]
     board.tasks.load(sap.read_cnc(_forged(body)))
     board.tasks.startcnct(0)
-    board.tasks.run_scan()
+    board.run_scan()
     status = board.tasks.rdcncts(0)
     assert (status.errnum, status.errline, status.running) == (10, 3, 0)
-    assert board.tasks.error_text(0) == "an instruction that no compiler writes: a condition without end"
+    assert board.tasks.each[0].error == "an instruction that no compiler writes: a condition without end"
 
 
 def test_a_stack_that_a_forged_loop_fills_ends_its_task() -> None:
@@ -189,7 +189,7 @@ def test_a_stack_that_a_forged_loop_fills_ends_its_task() -> None:
     )
     board.tasks.startcnct(0)
     for _ in range(400):
-        board.tasks.run_scan()
+        board.run_scan()
     assert board.tasks.rdcncts(0).errnum == 5
 
 

@@ -79,9 +79,7 @@ def served(names: dict[str, str]) -> list[ServedMachine]:
         made = KINDS[kind](Machinery(name, "mill3" if kind == "plain" else None))
         device: ServedDevice[Any] = ServedDevice(made.device, made.find_control)
         keeper = Keeper(device, Still())
-        machines.append(
-            ServedMachine(name, kind, made.device, device, keeper, made.find_control, made.own, end=made.end)
-        )
+        machines.append(ServedMachine(**made.all(), name=name, kind=kind, served=device, keeper=keeper))
     return machines
 
 

@@ -34,9 +34,9 @@ def with_machine(kind: str, visit: Callable[[ServedMachine], R], *, runs: bool =
     async def run() -> R:
         made = KINDS[kind](Machinery("m", None if kind != "plain" else "mill3"))
         served: ServedDevice[Any] = ServedDevice(made.device, made.find_control)
-        machine = ServedMachine(
-            "m", kind, made.device, served, Keeper(served, Still()), made.find_control, made.own, end=made.end
-        )
+        keeper = Keeper(served, Still())
+        made.programs = None  # those of its memory as they come
+        machine = ServedMachine(**made.all(), name="m", kind=kind, served=served, keeper=keeper)
         try:
             control = machine.control
             assert control is not None

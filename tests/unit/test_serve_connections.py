@@ -10,8 +10,8 @@ from typing import Any, TypeVar
 
 import pytest
 
+from polycnc.controllers.fanuc.wire import Frame, FrameType
 from polycnc.servers.calls import LIBRARIES
-from polycnc.servers.focas import Frame, FrameType
 from polycnc.servers.machines import Wanted, tell_errors
 from polycnc.servers.process import DOORS, Machinery
 from support.http_app import served_machine

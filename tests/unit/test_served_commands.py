@@ -37,9 +37,8 @@ def with_machine(kind: str, visit: Callable[[ServedMachine], R]) -> R:
         made = KINDS[kind](Machinery("m", None if kind != "plain" else "mill3"))
         served: ServedDevice[Any] = ServedDevice(made.device, made.find_control)
         keeper = Keeper(served, Still())
-        machine = ServedMachine(
-            "m", kind, made.device, served, keeper, made.find_control, made.own, end=made.end
-        )
+        made.programs = None  # those of its memory as they come
+        machine = ServedMachine(**made.all(), name="m", kind=kind, served=served, keeper=keeper)
         try:
             return visit(machine)
         finally:

@@ -72,7 +72,7 @@ def test_all(power_mate, board, card):
     power_mate.operator_message(2003, "LOW AIR")
     tasks = BoardTasks(board)
     tasks.load(compile_program(SAP, task=2))
-    tasks.tasks.startcnct(2)
+    tasks.startcnct(2)
     board.advance(11)
     card.advance(13)
     raise ValueError("here")

@@ -199,7 +199,7 @@ def test_a_cycle_of_a_sap_task_that_waits_is_bounded(text: str, most: int) -> No
     made = Board(parse_system_file("number_of_axes = 2"))
     tasks = BoardTasks(made)
     tasks.load(compile_program(f"program one; var n: longint; begin n := 0; {text} end.", task=2))
-    tasks.tasks.startcnct(2)
+    tasks.startcnct(2)
     assert lines_a_cycle(made) < most
 
 

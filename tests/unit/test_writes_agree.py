@@ -16,19 +16,17 @@ from typing import Any
 import pytest
 
 from polycnc.cnc import ControlError
-from polycnc.controllers.fanuc.wire import Value8
-from polycnc.servers.commands import carry_out
-from polycnc.servers.focas import (
-    FocasControl,
+from polycnc.controllers.fanuc.wire import (
     Frame,
     FrameReader,
     FrameType,
     Request,
-    Session,
-    load_profile,
+    Value8,
     read_replies,
     write_requests,
 )
+from polycnc.servers.commands import carry_out
+from polycnc.servers.focas import FocasControl, Session, load_profile
 from polycnc.servers.machines import ServedMachine
 from polycnc.servers.process import Machinery
 from support.focas_line import values

@@ -28,8 +28,8 @@ from polycnc.cli import (
     _view,
     _warmup,
 )
-from polycnc.cli._command import Command
-from polycnc.cli._errors import INTERRUPTED, check_environment, end_on_termination, end_with_report, guarded
+from polycnc.cli._command import add_command
+from polycnc.cli._errors import INTERRUPTED, check_environment, end_on_termination, end_with_report
 from polycnc.cli._output import print_remarks
 
 app = typer.Typer(
@@ -59,61 +59,27 @@ def _options(
     """Hold the options of the command itself."""
 
 
-app.command("run", cls=Command, short_help="Run a part program: times, path, alarms.")(
-    guarded(_run.run_command)
+_COMMANDS = (
+    ("run", _run.run_command, "Run a part program: times, path, alarms."),
+    ("view", _view.view_command, "Write a page that shows a run: path, time, blocks, tools."),
+    ("batch", _batch.batch_command, "Run or check whole folders of programs."),
+    ("compare", _compare.compare_command, "Compare two programs, or one on two machines."),
+    ("debug", _debug.debug_command, "Execute a program block by block and look at it."),
+    ("check", _check.check_command, "Report every error of part programs."),
+    ("lsp", _lsp.lsp_command, "Serve an editor: errors and codes while you type."),
+    ("post", _post.post_command, "Turn a tool path into a program for a control."),
+    ("machine", _machine.machine_command, "Show a machine's axes and limits."),
+    ("serve", _serve.serve_command, "Serve a simulated control to clients on the network."),
+    ("rehearse", _rehearse.rehearse_command, "Say what happens in a scenario, without waiting for it."),
+    ("clib", _clib.clib_command, "Write and build a C library that old programs link against."),
+    ("calls", _calls.calls_command, "Serve a machine to C programs, and trace what they call."),
+    ("conformance", _conformance.conformance_command, "Show which parts of the manuals are tested."),
+    ("schema", _schema.schema_command, "Print the JSON schema of outputs and files."),
+    ("warmup", _warmup.warmup_command, "Compile beforehand what the first use would wait for."),
 )
-app.command("view", cls=Command, short_help="Write a page that shows a run: path, time, blocks, tools.")(
-    guarded(_view.view_command)
-)
-app.command("batch", cls=Command, short_help="Run or check whole folders of programs.")(
-    guarded(_batch.batch_command)
-)
-app.command("compare", cls=Command, short_help="Compare two programs, or one on two machines.")(
-    guarded(_compare.compare_command)
-)
-app.command("debug", cls=Command, short_help="Execute a program block by block and look at it.")(
-    guarded(_debug.debug_command)
-)
-app.command("check", cls=Command, short_help="Report every error of part programs.")(
-    guarded(_check.check_command)
-)
-app.command("lsp", cls=Command, short_help="Serve an editor: errors and codes while you type.")(
-    guarded(_lsp.lsp_command)
-)
-app.command("post", cls=Command, short_help="Turn a tool path into a program for a control.")(
-    guarded(_post.post_command)
-)
-app.command("machine", cls=Command, short_help="Show a machine's axes and limits.")(
-    guarded(_machine.machine_command)
-)
-app.command("serve", cls=Command, short_help="Serve a simulated control to clients on the network.")(
-    guarded(_serve.serve_command)
-)
-app.command("rehearse", cls=Command, short_help="Say what happens in a scenario, without waiting for it.")(
-    guarded(_rehearse.rehearse_command)
-)
-app.command("clib", cls=Command, short_help="Write and build a C library that old programs link against.")(
-    guarded(_clib.clib_command)
-)
-app.command("calls", cls=Command, short_help="Serve a machine to C programs, and trace what they call.")(
-    guarded(_calls.calls_command)
-)
-app.command("conformance", cls=Command, short_help="Show which parts of the manuals are tested.")(
-    guarded(_conformance.conformance_command)
-)
-app.command("schema", cls=Command, short_help="Print the JSON schema of outputs and files.")(
-    guarded(_schema.schema_command)
-)
-app.command("warmup", cls=Command, short_help="Compile beforehand what the first use would wait for.")(
-    guarded(_warmup.warmup_command)
-)
-_focas.focas_app.command("dissect", cls=Command, short_help="Explain captured bytes of the protocol.")(
-    guarded(_focas.dissect_command)
-)
+for _name, _function, _says in _COMMANDS:
+    add_command(app, _name, _function, _says)
 app.add_typer(_focas.focas_app, name="focas", short_help="Tools around the protocol of FANUC controls.")
-_mtconnect.mtconnect_app.command(
-    "devices", cls=Command, short_help="Write the Devices.xml of a machine for an agent."
-)(guarded(_mtconnect.devices_command))
 app.add_typer(_mtconnect.mtconnect_app, name="mtconnect", short_help="Tools around MTConnect.")
 app.add_typer(_sap.sap_app, name="sap", short_help="Compile stand-alone programs of the APCI board.")
 

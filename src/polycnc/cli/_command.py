@@ -8,6 +8,8 @@ from typing import Any
 import typer
 from typer.core import TyperArgument, TyperCommand, TyperOption
 
+from polycnc.cli._errors import guarded
+
 _NUMBER = ("float_parsing", "int_parsing", "int_parsing_size", "int_from_float", "finite_number")
 _BOUNDS = ("greater_than", "greater_than_equal", "less_than", "less_than_equal")
 
@@ -71,6 +73,16 @@ class Command(TyperCommand):
         except typer.BadParameter as error:
             error.message = _in_words(error)
             raise
+
+
+def add_command(app: typer.Typer, name: str, function: Callable[..., None], short_help: str) -> None:
+    """Give an application a command that ends with a message and an exit status whatever happens."""
+    app.command(name, cls=Command, short_help=short_help)(guarded(function))
+
+
+def group(text: str) -> typer.Typer:
+    """Return an application for the commands below a command; `text` is its help."""
+    return typer.Typer(help=text, no_args_is_help=True, rich_markup_mode=None)
 
 
 def _in_words(error: typer.BadParameter) -> str:

@@ -7,14 +7,10 @@ from typing import Annotated
 
 import typer
 
+from polycnc.cli._command import add_command, group
 from polycnc.cli._output import echo
 
-focas_app = typer.Typer(
-    help="Tools around FOCAS, the Ethernet protocol of FANUC controls.",
-    no_args_is_help=True,
-    pretty_exceptions_enable=False,
-    rich_markup_mode=None,
-)
+focas_app = group("Tools around FOCAS, the Ethernet protocol of FANUC controls.")
 
 
 def dissect_command(
@@ -35,3 +31,6 @@ def dissect_command(
         ) from None
     for line in explain_capture(data, str(file), port):
         echo(line)
+
+
+add_command(focas_app, "dissect", dissect_command, "Explain captured bytes of the protocol.")

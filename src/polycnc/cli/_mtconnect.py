@@ -7,19 +7,10 @@ from typing import Annotated
 
 import typer
 
+from polycnc.cli._command import add_command, group
 from polycnc.cli._output import echo
 
-mtconnect_app = typer.Typer(
-    help="Tools around MTConnect, which collectors read machines by.",
-    no_args_is_help=True,
-    pretty_exceptions_enable=False,
-    rich_markup_mode=None,
-)
-
-
-@mtconnect_app.callback()
-def _group() -> None:
-    """Keep the commands apart, although there is one alone."""
+mtconnect_app = group("Tools around MTConnect, which collectors read machines by.")
 
 
 def devices_command(
@@ -51,3 +42,6 @@ def devices_command(
     else:
         with complete_or_absent(path) as partial:
             partial.write_bytes(document)
+
+
+add_command(mtconnect_app, "devices", devices_command, "Write the Devices.xml of a machine for an agent.")

@@ -8,21 +8,10 @@ from typing import Annotated
 
 import typer
 
-from polycnc.cli._command import Command
-from polycnc.cli._errors import guarded
+from polycnc.cli._command import add_command, group
 from polycnc.cli._output import bold, say
 
-sap_app = typer.Typer(
-    help="Compile stand-alone programs (SAP) of the APCI board.",
-    no_args_is_help=True,
-    rich_markup_mode=None,
-    context_settings={"help_option_names": ["-h", "--help"]},
-)
-
-
-@sap_app.callback()
-def _options() -> None:
-    """Keep `compile` a subcommand, though it is the only one."""
+sap_app = group("Compile stand-alone programs (SAP) of the APCI board.")
 
 
 def compile_command(
@@ -62,6 +51,4 @@ def compile_command(
     say(f"wrote {target}: task {task}, {len(program.code)} instructions")
 
 
-sap_app.command("compile", cls=Command, short_help="Compile a program to a .CNC file.")(
-    guarded(compile_command)
-)
+add_command(sap_app, "compile", compile_command, "Compile a program to a .CNC file.")

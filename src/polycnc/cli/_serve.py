@@ -181,9 +181,9 @@ async def serve_plan(plan: Plan, *, is_part: bool = False) -> None:
             from polycnc.servers.fleets import Part
 
             part = Part(sys.stdout, lambda: signal.raise_signal(signal.SIGTERM))
-            part.tell_doors(serving.doors_of_machines())
+            part.tell_doors(serving.doors)
         else:
-            _say_doors([(name, door.said) for name, door in serving.doors])
+            _say_doors([(name, door.said) for name, door, _ in serving.doors])
         await asyncio.sleep(0)  # whoever wants it to end already
         gc.collect()
         await serving.begin()

@@ -70,7 +70,7 @@ def _warm_apci(progress: Progress) -> None:
     progress("a stand-alone program", 0.9)
     tasks = BoardTasks(board)
     tasks.load(sap.compile_program("CI0 := 1;"))
-    tasks.tasks.startcnct(0)
+    tasks.startcnct(0)
     board.advance(1)
 
 

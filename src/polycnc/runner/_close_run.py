@@ -7,12 +7,12 @@ from pathlib import Path
 import numpy as np
 import numpy.typing as npt
 
-from polycnc.cnc import ProgramRun, RunOptions, let_pass
+from polycnc.cnc import RunOptions, let_pass
 from polycnc.kernel import BLOCK
 from polycnc.machine import Machine, MachineConfig, PathConfig, RotaryAxis, TimesConfig
 from polycnc.nc import Dialect, ProgramText
 from polycnc.runner._execution import Floats, Progress, TaggedRows, run_to_end
-from polycnc.runner._program_control import Surroundings, control_for
+from polycnc.runner._program_control import Surroundings, control_for, run_under
 
 _AXES = "XYZ"
 _LEVER_MM = 300.0  # no point of a part is much further from the rotary axes that swing it
@@ -41,18 +41,7 @@ def run_closely(
     control = control_for(dialect, program, machine, Surroundings(root))
     if control is not None and not control.has_statements(program):
         control = None
-    execution = ProgramRun(
-        machine,
-        program,
-        dialect,
-        options=options,
-        rows=compare,
-        on_passed=let_pass,
-        language=None if control is None else control.language,
-        config=None if control is None else control.config,
-    )
-    if control is not None:
-        control.attach(execution)
+    execution = run_under(control, machine, program, dialect, options, rows=compare, on_passed=let_pass)
     run_to_end(execution, every_cycle=True)
     if control is not None:
         control.finish()

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 import numpy.typing as npt
@@ -11,7 +12,9 @@ import numpy.typing as npt
 from polycnc.cnc import ProgramRun
 from polycnc.kernel import FEED_LENGTH, FEED_S, RAPID_LENGTH, RAPID_S, TOP_SPEED, WAIT_S
 from polycnc.nc import BlockRecords
-from polycnc.runner._program_control import ProgramControl
+
+if TYPE_CHECKING:
+    from polycnc.controllers.bosch import ChannelHost
 
 Floats = npt.NDArray[np.float64]
 Rows = Callable[[Floats], None]
@@ -43,7 +46,7 @@ def run_to_end(
     *,
     every_cycle: bool,
     progress: Progress | None = None,
-    control: ProgramControl | None = None,
+    control: ChannelHost | None = None,
     loop_limit_s: float = LOOP_LIMIT_S,
 ) -> None:
     """Run until the program has ended and everything has stopped, a program stop where it stands, or an alarm.
@@ -70,7 +73,7 @@ def run_to_end(
 
 
 def _run_with(
-    control: ProgramControl,
+    control: ChannelHost,
     run: ProgramRun,
     loop_limit_s: float,
     *,

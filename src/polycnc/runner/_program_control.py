@@ -6,69 +6,22 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from importlib.util import find_spec
 from pathlib import Path
-from typing import TYPE_CHECKING, Protocol
+from typing import TYPE_CHECKING
 
 import numpy as np
 import numpy.typing as npt
 
 from polycnc.cnc import OnPassed, ProgramRun, RunOptions
-from polycnc.errors import ProgramError, UsageError
+from polycnc.errors import UsageError
 from polycnc.machine import Machine, MachineConfig
-from polycnc.nc import Dialect, Event, Language, ProgramText, language_for
+from polycnc.nc import Dialect, Event, ProgramText, language_for
 from polycnc.outputs import check_output
 
 if TYPE_CHECKING:
-    from polycnc.cnc import Control
+    from polycnc.controllers.bosch import ChannelHost, DebuggedPnc
 
 RowsWithTags = Callable[[npt.NDArray[np.float64], npt.NDArray[np.int64]], None]
 OnEvent = Callable[[Event], bool | None]
-
-
-class Screen(Protocol):
-    """What a control shows, to be kept in a file."""
-
-    def save(self, path: Path) -> None:
-        """Write the screen to a file, in the format that its name ends with."""
-
-
-class ProgramControl(Protocol):
-    """What executes the statements of one program."""
-
-    @property
-    def language(self) -> Language:
-        """The language for the channel of the run."""
-
-    @property
-    def screen(self) -> Screen:
-        """What the program has put on the screen."""
-
-    @property
-    def config(self) -> MachineConfig:
-        """The machine file with the tables that programs change."""
-
-    def attach(self, run: ProgramRun) -> None:
-        """Take the run whose channel executes the program."""
-
-    def has_statements(self, program: ProgramText) -> bool:
-        """Tell whether a program holds more than NC blocks."""
-
-    def check(self, program: ProgramText) -> list[ProgramError]:
-        """Return everything that is wrong with a program without running it."""
-
-    def wakes_in_s(self) -> float | None:
-        """Return when the WAIT of the program ends at the latest (s from now, may be inf), None if it is in none."""
-
-    def stuck(self) -> ProgramError | None:
-        """Return the error of a program that waits for what will not come."""
-
-    def looping(self, cycles: int, limit_s: float) -> ProgramError | None:
-        """Return the error of a program that has looped for `cycles` cycles of standstill, None if it may go on."""
-
-    def finish(self) -> None:
-        """End everything that does not outlive a program, and keep what does."""
-
-    def variables(self) -> dict[str, object]:
-        """Return the variables that outlive the program's lines, by name."""
 
 
 @dataclass(frozen=True)
@@ -82,19 +35,14 @@ class Surroundings:
 
 def control_for(
     dialect: Dialect, program: ProgramText, machine: Machine, surroundings: Surroundings
-) -> ProgramControl | None:
+) -> ChannelHost | None:
     """Return the control that executes a program's language, None if it holds NC blocks only."""
     make = _CONTROLS.get(dialect.language)
     return None if make is None else make(program, machine, surroundings)
 
 
-def has_control(dialect: Dialect) -> bool:
-    """Return whether a control executes the language of a dialect."""
-    return dialect.language in _CONTROLS
-
-
 def run_under(
-    control: ProgramControl | None,
+    control: ChannelHost | None,
     machine: Machine,
     program: ProgramText,
     dialect: Dialect,
@@ -124,8 +72,8 @@ def run_under(
     return run
 
 
-def needs_root(dialect: Dialect) -> bool:
-    """Say whether programs of a dialect may read and write files of their control."""
+def has_control(dialect: Dialect) -> bool:
+    """Say whether a control executes the language of a dialect, whose programs may read and write its files."""
     return dialect.language in _CONTROLS
 
 
@@ -166,7 +114,7 @@ def read_keys(path: str | Path) -> tuple[str, ...]:
     return tuple(line if line == " " else line.strip() for line in lines if line)
 
 
-def _cpl(program: ProgramText, machine: Machine, surroundings: Surroundings) -> ProgramControl | None:
+def _cpl(program: ProgramText, machine: Machine, surroundings: Surroundings) -> ChannelHost | None:
     from polycnc.controllers.bosch import BoschSystem, ChannelHost
 
     return ChannelHost(
@@ -177,27 +125,9 @@ def _cpl(program: ProgramText, machine: Machine, surroundings: Surroundings) -> 
     )
 
 
-class Statements(Protocol):
-    """A control whose programs hold statements, under a debugger."""
-
-    @property
-    def control(self) -> Control:
-        """The control."""
-
-    @property
-    def depth(self) -> int:
-        """How deep the program that runs is nested; 0 is the main program."""
-
-    def stand_at(self, stands: Callable[[str, int, int], bool]) -> None:
-        """Let preparation wait before lines that `stands` names: file, line, depth of nesting."""
-
-    def variables(self) -> dict[str, object]:
-        """Return the variables that the program sees now."""
-
-
 def statements_for(
     dialect: Dialect, program: ProgramText, machine: MachineConfig, root: Path
-) -> Statements | None:
+) -> DebuggedPnc | None:
     """Return the control for a debugger of a program with statements, None if it holds NC blocks only."""
     from polycnc.nc.cpl import holds_cpl
 
@@ -208,14 +138,14 @@ def statements_for(
     return DebuggedPnc(root, machine)
 
 
-_CONTROLS: dict[str, Callable[[ProgramText, Machine, Surroundings], ProgramControl | None]] = {"cpl": _cpl}
+_CONTROLS: dict[str, Callable[[ProgramText, Machine, Surroundings], ChannelHost | None]] = {"cpl": _cpl}
 """The controls by the language that a dialect names."""
 
 
 SCREEN_FORMATS = (".txt", ".svg", ".png")
 
 
-def check_screen_file(path: str | Path, program: ProgramText, control: ProgramControl | None) -> None:
+def check_screen_file(path: str | Path, program: ProgramText, control: ChannelHost | None) -> None:
     """Check that the screen of a program can be kept under a name.
 
     Raises:

@@ -15,7 +15,7 @@ from polycnc.outputs import complete_or_absent
 from polycnc.runner._event_log import EventLog
 from polycnc.runner._execution import LOOP_LIMIT_S, Progress, Rows, TaggedRows, run_to_end, totals
 from polycnc.runner._outcome import Alarm, RunMessage
-from polycnc.runner._program_control import ProgramControl, control_for, run_under
+from polycnc.runner._program_control import control_for, run_under
 from polycnc.runner._record import Record
 from polycnc.runner._remarks import empty_remark, times_remark
 from polycnc.runner._result import RunResult, TracedResult
@@ -23,6 +23,7 @@ from polycnc.runner._settings import RunSettings, program_text
 from polycnc.runner._trace import TraceCollector
 
 if TYPE_CHECKING:
+    from polycnc.controllers.bosch import ChannelHost
     from polycnc.runner._machining import MachiningCollector
     from polycnc.stock import Form
 
@@ -191,7 +192,8 @@ def run_program(
     simulated = Machine(config, servo=settings.servo, record_cycles=record.cycles)
     dialect = (chosen := settings.dialect_of(text)).dialect
     control = control_for(dialect, text, simulated, settings.surroundings_of(program))
-    settings.check_outputs(program, text, dialect, control)
+    settings.check_screen(program, text, control)
+    settings.check_parameters(program, dialect)
     log = EventLog(text)
     options = RunOptions(
         block_delete=settings.skip_levels,
@@ -250,7 +252,7 @@ def _remark(execution: ProgramRun, text: ProgramText, times: str | None) -> None
 
 
 def _to_end(
-    execution: ProgramRun, control: ProgramControl | None, settings: RunSettings, record: Record
+    execution: ProgramRun, control: ChannelHost | None, settings: RunSettings, record: Record
 ) -> ProgramError | None:
     """Run a program to its end; return the error of one that waits or loops without end."""
     if settings.feed_override != 1.0:

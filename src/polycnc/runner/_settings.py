@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -12,9 +11,10 @@ from polycnc.machine import MachineConfig, load_machine
 from polycnc.nc import ChosenDialect, Dialect, ProgramText, choose_dialect
 from polycnc.outputs import check_output, keep_inputs
 from polycnc.runner._execution import LOOP_LIMIT_S
-from polycnc.runner._program_control import ProgramControl, Surroundings, check_screen_file, root_of
+from polycnc.runner._program_control import Surroundings, check_screen_file, root_of
 
 if TYPE_CHECKING:
+    from polycnc.controllers.bosch import ChannelHost
     from polycnc.stock import Form
 
 Program = str | Path | ProgramText
@@ -146,17 +146,6 @@ class RunSettings:
         """
         return Surroundings(self.root_of(program), self.keys, self.skip_levels)
 
-    def check_outputs(
-        self, program: Program, text: ProgramText, dialect: Dialect, control: ProgramControl | None
-    ) -> None:
-        """Check that what a program shows, and the parameters that outlive it, can be written where they should.
-
-        Raises:
-            UsageError: there is nothing to write, or the place is wrong.
-        """
-        self.check_screen(program, text, control)
-        self.check_parameters(program, dialect)
-
     def check_parameters(self, program: Program, dialect: Dialect) -> None:
         """Check that the parameters that outlive a program can be written where they should.
 
@@ -171,14 +160,9 @@ class RunSettings:
                 hint="Leave --save-parameters out, or run a program of LinuxCNC.",
             )
         check_output(self.save_parameters, (".var",), "a file of parameters")
-        read: Iterable[object] = (program, self.machine, self.dialect)
-        keep_inputs(
-            self.save_parameters,
-            (each for each in read if isinstance(each, str | Path)),
-            "a file of parameters",
-        )
+        keep_inputs(self.save_parameters, self._files_with(program), "a file of parameters")
 
-    def check_screen(self, program: Program, text: ProgramText, control: ProgramControl | None) -> None:
+    def check_screen(self, program: Program, text: ProgramText, control: ChannelHost | None) -> None:
         """Check that what a program shows can be written where it should.
 
         Raises:
@@ -186,9 +170,12 @@ class RunSettings:
         """
         if self.screen is None:
             return
-        files: Iterable[object] = (program, self.machine, self.dialect)
-        keep_inputs(self.screen, (each for each in files if isinstance(each, str | Path)), "a screen")
+        keep_inputs(self.screen, self._files_with(program), "a screen")
         check_screen_file(self.screen, text, control)
+
+    def _files_with(self, program: Program) -> list[str | Path]:
+        """Return what names the files that a run reads."""
+        return [each for each in (program, self.machine, self.dialect) if isinstance(each, str | Path)]
 
 
 def program_text(program: Program) -> ProgramText:

@@ -34,7 +34,7 @@ def tools_of(config: MachineConfig, texts: Mapping[str, ProgramText]) -> dict[in
         if described is not None:
             tools[number] = described
         elif each.radius_mm > 0.0:
-            with _named(number, config):
+            with named_tool(number, config):
                 tools[number] = Tool(ToolKind.FLAT, 2.0 * each.radius_mm)
     for text in texts.values():
         inch = _is_inch(text)
@@ -42,14 +42,14 @@ def tools_of(config: MachineConfig, texts: Mapping[str, ProgramText]) -> dict[in
             if (found := tool_of_remark(remark, inch=inch)) is not None:
                 tools[number] = found
     for number, each in config.tools.items():
-        with _named(number, config):
+        with named_tool(number, config):
             if (whole := _whole(tools.get(number), each)) is not None:
                 tools[number] = whole
     return tools
 
 
 @contextmanager
-def _named(number: int, config: MachineConfig) -> Iterator[None]:
+def named_tool(number: int, config: MachineConfig) -> Iterator[None]:
     """Name a tool of the machine file in what is wrong with it."""
     try:
         yield

@@ -9,8 +9,9 @@ from __future__ import annotations
 import csv
 import shutil
 from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from pathlib import Path
-from typing import Any, Protocol, TextIO
+from typing import Any, TextIO, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
@@ -34,19 +35,6 @@ def file_columns(rows: Floats) -> Floats:
     return rows[:, kept]
 
 
-class TraceFile(Protocol):
-    """A trace file that is written as the program runs."""
-
-    def add(self, rows: Floats, programs: Names | None) -> None:
-        """Write a piece of the record; `programs` [rows] where `add_programs` has been called."""
-
-    def add_programs(self, program: str) -> None:
-        """Begin the column of programs; all rows until now belong to `program`."""
-
-    def close(self, complete: bool) -> None:
-        """Finish the file; one that is not complete will be removed."""
-
-
 class CsvTrace:
     """Write a trace as comma-separated text; numbers are the shortest that read back as the same double."""
 
@@ -67,20 +55,27 @@ class CsvTrace:
     def add_programs(self, program: str) -> None:
         """Write the file once more, each line with the program."""
         self._file.close()
-        before = self._path.with_name(f"{self._path.name}.before")
-        shutil.copyfile(self._path, before)  # the file itself stays, and with it its lock
-        try:
+        with _copied(self._path) as before:
             self._file = _text_file(self._path)
             with before.open(encoding="utf-8") as lines:
                 self._file.write(f"{lines.readline()[:-1]},{PROGRAM}\n")
                 cell = _cell(program)
                 self._file.writelines(f"{line[:-1]},{cell}\n" for line in lines)
-        finally:
-            before.unlink()
 
     def close(self, complete: bool) -> None:
         """Finish the file."""
         self._file.close()
+
+
+@contextmanager
+def _copied(path: Path) -> Iterator[Path]:
+    """Copy a file beside it for a while; the file itself stays, and with it its lock."""
+    before = path.with_name(f"{path.name}.before")
+    shutil.copyfile(path, before)
+    try:
+        yield before
+    finally:
+        before.unlink()
 
 
 def _text_file(path: Path) -> TextIO:
@@ -145,7 +140,7 @@ class ParquetTrace:
     """Write a trace as a Parquet file, one row group per piece of the record."""
 
     def __init__(self, path: Path, columns: Sequence[str]) -> None:
-        self._arrow = _pyarrow()
+        self._arrow = pyarrow_for("a Parquet trace")
         self._path = path
         types = [self._arrow.int64() if name == "block" else self._arrow.float64() for name in columns]
         self._schema = self._arrow.schema(list(zip(columns, types, strict=True)))
@@ -172,9 +167,7 @@ class ParquetTrace:
         self._writer.close()
         kind = self._arrow.dictionary(self._arrow.int32(), self._arrow.string())
         self._schema = self._schema.append(self._arrow.field(PROGRAM, kind))
-        before = self._path.with_name(f"{self._path.name}.before")
-        shutil.copyfile(self._path, before)  # the file itself stays, and with it its lock
-        try:
+        with _copied(self._path) as before:
             self._writer = self._arrow.parquet.ParquetWriter(str(self._path), self._schema)
             with self._arrow.parquet.ParquetFile(str(before)) as file:
                 for group in range(file.num_row_groups):
@@ -182,26 +175,30 @@ class ParquetTrace:
                     names = self._names(np.full(table.num_rows, program, object))
                     arrays = [*table.columns, names]
                     self._writer.write_table(self._arrow.table(arrays, schema=self._schema))
-        finally:
-            before.unlink()
 
     def close(self, complete: bool) -> None:
         """Finish the file."""
         self._writer.close()
 
 
-def _pyarrow() -> Any:
+def pyarrow_for(what: str) -> Any:
+    """Return pyarrow, with what reads and writes Parquet.
+
+    Raises:
+        UsageError: It is not installed; `what` needs it.
+    """
     try:
         import pyarrow
         import pyarrow.parquet
     except ImportError:
         raise UsageError(
-            "a Parquet trace needs pyarrow", hint="Install it: pip install 'polycnc[parquet]'."
+            f"{what} needs pyarrow", hint="Install it: pip install 'polycnc[parquet]'."
         ) from None
     return pyarrow
 
 
-WRITERS: dict[str, type[CsvTrace] | type[NpzTrace] | type[ParquetTrace]] = {
+TraceFile: TypeAlias = CsvTrace | NpzTrace | ParquetTrace
+WRITERS: dict[str, type[TraceFile]] = {
     ".csv": CsvTrace,
     ".npz": NpzTrace,
     ".parquet": ParquetTrace,
@@ -253,7 +250,7 @@ def _read_npz(path: Path) -> dict[str, npt.NDArray[Any]]:
 
 
 def _read_parquet(path: Path) -> dict[str, npt.NDArray[Any]]:
-    table = _pyarrow().parquet.read_table(path)
+    table = pyarrow_for("a Parquet trace").parquet.read_table(path)
     return {
         name: table[name].cast("string").to_numpy() if name == PROGRAM else table[name].to_numpy()
         for name in table.column_names

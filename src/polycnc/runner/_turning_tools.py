@@ -9,7 +9,7 @@ from dataclasses import replace
 from polycnc.errors import UsageError
 from polycnc.machine import MachineConfig, ToolConfig
 from polycnc.nc import TIPS, ProgramText
-from polycnc.runner._stock_tools import remarks_of_tools, tools_of
+from polycnc.runner._stock_tools import named_tool, remarks_of_tools, tools_of
 from polycnc.stock import Insert, Tool, ToolKind, grooving_tool, iso_insert, threading_tool
 
 _INSIDE = re.compile(r"\bbor(?:e|ing)\b|\binside\b|\binternal\b", re.IGNORECASE)
@@ -36,13 +36,11 @@ def turning_tools_of(config: MachineConfig, texts: Mapping[str, ProgramText]) ->
             if (insert := _of_remark(remark, at)) is not None:
                 tools[number] = insert
     for number, at in config.tools.items():
-        try:
+        with named_tool(number, config):
             insert = _of_table(at)
             known = tools.get(number) if insert is None else insert
             if isinstance(known, Insert):
                 tools[number] = replace(known, left_hand=at.left_hand)
-        except UsageError as error:
-            raise UsageError(f"tool {number} of '{config.name}': {error.what}", hint=error.hint) from None
     return tools
 
 

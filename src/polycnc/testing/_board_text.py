@@ -29,9 +29,7 @@ def _tasks(board: Board) -> Iterator[str]:
     """Yield what the tasks of a board that have a program do."""
     if not isinstance(board.tasks, BoardTasks):
         return
-    tasks = board.tasks.tasks
-    for task in tasks.each:
+    for task in board.tasks.each:
         if task.program is not None:
-            error = tasks.error_text(task.number)
-            doing = f"ended: {error}" if error else task.state.value
-            yield f"task {task.number}: {task.program.name}:{tasks.rdcncts(task.number).csrcline}: {doing}"
+            doing = f"ended: {task.error}" if task.error else task.state.value
+            yield f"task {task.number}: {task.program.name}:{task.status().csrcline}: {doing}"

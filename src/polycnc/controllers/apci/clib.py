@@ -6,9 +6,9 @@ import ctypes
 from typing import Any
 
 from polycnc.controllers.apci import pcap
-from polycnc.controllers.apci.board._board_variables import COMMON_BUFFER_BYTES
 from polycnc.controllers.apci.board._codes import BootCode, InitCode, Status, Success
 from polycnc.controllers.apci.board._declared import HEADER
+from polycnc.controllers.apci.core._turn_state import BUFFER_BYTES
 from polycnc.controllers.apci.library._session import UNKNOWN_ERROR
 from polycnc.controllers.library import Element, Table, lay_out
 from polycnc.controllers.library.clib import CLibrary
@@ -32,7 +32,7 @@ _PRINTED = {
     "rdcbcnc": "rdcbcnct", "rdjtvI": "rdjtvl", "rdlsM": "rdlsm", "rdtrtv": "rdtrtvl", "wrbcnct": "wrcbcnct",
     "wrjtvI": "wrjtvl", "wrppe": "wrrp", "wrtrtv": "wrtrtvl",
 }  # fmt: skip
-_MOST = COMMON_BUFFER_BYTES + 1
+_MOST = BUFFER_BYTES + 1
 _DECLARATIONS = """\
 typedef void(PC_CALL *InterruptRoutine)(int lines);
 

@@ -12,7 +12,7 @@ from typing import Any
 from polycnc.errors import UsageError
 from polycnc.machine import MachineConfig
 from polycnc.nc import Dialect, ProgramText, choose_dialect
-from polycnc.runner._program_control import needs_root
+from polycnc.runner._program_control import has_control
 from polycnc.runner.batches._child import Limits
 from polycnc.runner.batches._job import Job, ProgramReport, Setup, answer_of, blank_report
 from polycnc.runner.batches._programs import find_programs
@@ -258,7 +258,7 @@ class _Run:
             chosen = choose_dialect(ProgramText(str(path), content), setup.dialect)
         except UsageError:
             return None  # no text: its job reports it
-        return (self._root or path.parent) if needs_root(chosen.dialect) else None
+        return (self._root or path.parent) if has_control(chosen.dialect) else None
 
     def _digest_of(self, root: Path) -> bytes:
         if root not in self._roots:

@@ -19,13 +19,15 @@ MOST_DETAILED = 5_000
 _MOST_MESSAGES = 20
 
 
-class _Reports(Protocol):
+class Reports(Protocol):
+    """The reports of a batch."""
+
     def __len__(self) -> int: ...
 
     def __iter__(self) -> Iterator[ProgramReport]: ...
 
 
-def write_report(batch: _Reports, path: Path) -> None:
+def write_report(batch: Reports, path: Path) -> None:
     """Write the page to a file."""
     detailed = len(batch) <= MOST_DETAILED
     packed = io.BytesIO()

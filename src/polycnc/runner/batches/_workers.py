@@ -93,12 +93,7 @@ class ClusterWorkers:
     """The workers of a Dask cluster, each with a process of its own for every thread; the cluster is left as it was."""
 
     def __init__(self, client: Any) -> None:
-        self._client = client
-
-    @property
-    def client(self) -> Any:
-        """The client of the cluster."""
-        return self._client
+        self.client = client
 
     @classmethod
     def at(cls, address: str, wait_s: float = 10.0) -> ClusterWorkers:
@@ -119,14 +114,14 @@ class ClusterWorkers:
 
     def close(self) -> None:
         """Take the connection away."""
-        self._client.close()
+        self.client.close()
 
     def run(self, chunks: Iterator[Chunk], setups: Sequence[Setup], limits: Limits) -> Iterator[Reported]:
         """Yield the reports of each chunk as they come; what a lost worker had is run by another."""
         distributed = distributed_module()
         from polycnc.runner.batches._on_worker import ChildrenPlugin, run_chunk
 
-        client = self._client
+        client = self.client
         threads = sum(client.nthreads().values())
         if not threads:
             raise _no_worker()

@@ -6,12 +6,13 @@ import csv
 from collections.abc import Iterable, Iterator
 from itertools import islice
 from pathlib import Path
-from typing import Any, Protocol
+from typing import Any
 
 from polycnc.errors import UsageError
 from polycnc.outputs import check_output, complete_or_absent, keep_inputs
+from polycnc.runner._trace_formats import pyarrow_for
 from polycnc.runner.batches._job import ProgramReport
-from polycnc.runner.batches._report import write_report
+from polycnc.runner.batches._report import Reports, write_report
 
 _PIECE = 4096  # rows of a piece of a Parquet file
 _NUMBERS = (
@@ -47,15 +48,7 @@ _COLUMNS = (
 )
 
 
-class Batch(Protocol):
-    """The reports of a batch."""
-
-    def __len__(self) -> int: ...
-
-    def __iter__(self) -> Iterator[ProgramReport]: ...
-
-
-def _write_csv(batch: Batch, path: Path) -> None:
+def _write_csv(batch: Reports, path: Path) -> None:
     with path.open("w", encoding="utf-8", newline="") as file:
         writer = csv.writer(file)
         writer.writerow(_COLUMNS)
@@ -69,8 +62,8 @@ def _cell(value: object) -> object:
     return "" if value is None else str(value).lower() if isinstance(value, bool) else value
 
 
-def _write_parquet(batch: Batch, path: Path) -> None:
-    arrow = _pyarrow()
+def _write_parquet(batch: Reports, path: Path) -> None:
+    arrow = pyarrow_for("a Parquet table")
     text, number, whole = arrow.string(), arrow.float64(), arrow.int64()
     types: dict[str, Any] = {
         **dict.fromkeys(_COLUMNS, text),
@@ -105,21 +98,10 @@ def _row(report: ProgramReport) -> dict[str, Any]:
     }
 
 
-def _pieces(batch: Batch) -> Iterator[list[ProgramReport]]:
+def _pieces(batch: Reports) -> Iterator[list[ProgramReport]]:
     rest = iter(batch)
     while piece := list(islice(rest, _PIECE)):
         yield piece
-
-
-def _pyarrow() -> Any:
-    try:
-        import pyarrow
-        import pyarrow.parquet
-    except ImportError:
-        raise UsageError(
-            "a Parquet table needs pyarrow", hint="Install it: pip install 'polycnc[parquet]'."
-        ) from None
-    return pyarrow
 
 
 _WRITERS = {".html": write_report, ".htm": write_report, ".parquet": _write_parquet, ".csv": _write_csv}
@@ -140,11 +122,11 @@ def check_batch_file(path: str | Path, inputs: Iterable[str | Path] = ()) -> Pat
         )
     keep_inputs(target, inputs, "a report")
     if target.suffix.lower() == ".parquet":
-        _pyarrow()
+        pyarrow_for("a Parquet table")
     return target
 
 
-def write_batch(batch: Batch, path: str | Path) -> Path:
+def write_batch(batch: Reports, path: str | Path) -> Path:
     """Write the reports of a batch, in their order, and return the path.
 
     Raises:

@@ -3,10 +3,10 @@
 from polycnc.controllers.library.clib import PORT
 from polycnc.servers.calls._build import TARGETS, build_command, build_library, target_here, write_library
 from polycnc.servers.calls._caller import Caller
-from polycnc.servers.calls._client import MAGIC, CallClient, Hello
+from polycnc.servers.calls._client import MAGIC, CallClient
 from polycnc.servers.calls._imports import missing_of
-from polycnc.servers.calls._libraries import LIBRARIES, Served, library_of
-from polycnc.servers.calls._replay import Replayed, replay
+from polycnc.servers.calls._libraries import LIBRARIES, library_of
+from polycnc.servers.calls._replay import replay
 from polycnc.servers.calls._server import CallsServer
 from polycnc.servers.calls._trace import Trace
 
@@ -18,9 +18,6 @@ __all__ = [
     "CallClient",
     "Caller",
     "CallsServer",
-    "Hello",
-    "Replayed",
-    "Served",
     "Trace",
     "build_command",
     "build_library",

@@ -15,14 +15,13 @@ from polycnc.servers.calls._caller import Caller
 
 @dataclass(frozen=True, slots=True)
 class Served:
-    """A library: `make` returns a caller with a session of its own, which reaches these devices; `end` ends it.
+    """A library: `make` returns a caller with a session of its own, which reaches these devices.
 
     The third argument of `make` is what calls that read do to the time of the devices, None for nothing.
     """
 
     load: Callable[[], CLibrary]
     make: Callable[[CLibrary, Sequence[Any], Way | None], Caller]
-    end: Callable[[Any], None]
 
 
 def _load_fwlib() -> CLibrary:
@@ -97,9 +96,9 @@ def _call_mcug3(library: CLibrary, devices: Sequence[Any], clock: Way | None = N
 _OF_FILES = ("InitMcuSystem2", "InitMcuSystem3", "txbf", "txbf2")
 
 LIBRARIES: dict[str, Served] = {
-    "fanuc": Served(_load_fwlib, _call_fwlib, lambda session: session.detach()),
-    "imc": Served(_load_imcnet, _call_imcnet, lambda session: session.detach()),
-    "apci": Served(_load_mcug3, _call_mcug3, lambda session: session.detach()),
+    "fanuc": Served(_load_fwlib, _call_fwlib),
+    "imc": Served(_load_imcnet, _call_imcnet),
+    "apci": Served(_load_mcug3, _call_mcug3),
 }
 """By the kind of controller."""
 

@@ -249,8 +249,7 @@ class _Line(asyncio.BufferedProtocol):
         caller = self._client.caller
         if caller is not None:
             self._client.ended = True
-            end = LIBRARIES[caller.library.kind].end
-            self._machines[0].keeper.submit(lambda: end(caller.session), lambda _: None)
+            self._machines[0].keeper.submit(caller.session.detach, lambda _: None)
 
     def abort(self) -> None:
         """End the connection at once."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 
 from polycnc.controllers.fanuc import DIAGNOSIS, Attribute, Kind, ParameterRow, pmc
 from polycnc.controllers.fanuc.wire import PMC, PMC_WIDTHS, Content, Request, Value8, swapped
@@ -185,19 +185,25 @@ def settings(view: View, request: Request) -> Content:
 @answers(0x10)
 def parameter_types(view: View, request: Request) -> Content:
     """Return numbers and type words of so many parameters from one on, and the numbers before and after."""
+    rows = view.control.parameters.rows
+    around, found = _from_one_on(
+        request, [number for number, row in rows.items() if Attribute.NOT_READABLE not in row.attributes]
+    )
+    return around, [{"number": number, "type": rows[number].type_word} for number in found]
+
+
+def _from_one_on(request: Request, known: Iterable[int]) -> tuple[dict[str, int], list[int]]:
+    """Return the numbers before and after those that are asked for, so many from one on, and these."""
     first, count = request.arguments[:2]
     if not 0 < count <= MOST_NUMBERS:
         raise RefusedError(LENGTH)
-    known = [
-        row for row in view.control.parameters.rows.values() if Attribute.NOT_READABLE not in row.attributes
-    ]
-    found = [row for row in known if row.number >= first][:count]
+    known = sorted(known)
+    found = [number for number in known if number >= first][:count]
     if not found:
         raise RefusedError(NUMBER)
-    before = max((row.number for row in known if row.number < found[0].number), default=0)
-    behind = min((row.number for row in known if row.number > found[-1].number), default=0)
-    each = [{"number": row.number, "type": row.type_word} for row in found]
-    return {"before": before, "behind": behind}, each
+    before = max((number for number in known if number < found[0]), default=0)
+    behind = min((number for number in known if number > found[-1]), default=0)
+    return {"before": before, "behind": behind}, found
 
 
 _ONE_VALUE, _EACH_AXIS, _EACH_SPINDLE = 0, 3, 4
@@ -209,21 +215,13 @@ def _infos(request: Request, rows: Mapping[int, tuple[Kind, int, int]]) -> Conte
 
     A row is its kind, how it is repeated (once, for each axis, for each spindle), and its other attributes.
     """
-    first, count = request.arguments[:2]
-    if not 0 < count <= MOST_NUMBERS:
-        raise RefusedError(LENGTH)
-    known = sorted(rows)
-    found = [number for number in known if number >= first][:count]
-    if not found:
-        raise RefusedError(NUMBER)
-    before = max((number for number in known if number < found[0]), default=0)
-    behind = min((number for number in known if number > found[-1]), default=0)
+    around, found = _from_one_on(request, rows)
     made = []
     for number in found:
         kind, array, others = rows[number]
         size = 0 if kind is Kind.BIT else kind.size
         made.append({"number": number, "size": size, "array": array, "others": others, **_PLAIN})
-    return {"before": before, "behind": behind}, made
+    return around, made
 
 
 @answers(0xA0)

@@ -3,7 +3,7 @@
 from polycnc.servers.grbl._codes import GrblAlarm, GrblError
 from polycnc.servers.grbl._core import GrblCore
 from polycnc.servers.grbl._make import grbl_control, grbl_dialect
-from polycnc.servers.grbl._server import PORT, GrblServer, Owner
+from polycnc.servers.grbl._server import PORT, GrblServer
 from polycnc.servers.grbl._settings import ROWS as SETTINGS
 from polycnc.servers.grbl._watching import GrblWatch
 
@@ -15,7 +15,6 @@ __all__ = [
     "GrblError",
     "GrblServer",
     "GrblWatch",
-    "Owner",
     "grbl_control",
     "grbl_dialect",
 ]

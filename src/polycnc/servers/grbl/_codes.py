@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from enum import IntEnum
+from polycnc.controllers.library import Code
 
 
-class GrblError(IntEnum):
+class GrblError(Code):
     """Why a line was refused: `error:n`."""
 
     LETTER = 1, "G-code words consist of a letter and a value; the letter was not found"
@@ -37,17 +37,8 @@ class GrblError(IntEnum):
     ARC_OFFSETS = 35, "The arc has no offset word of its plane"
     UNUSED = 36, "Words that no command uses"
 
-    text: str
 
-    def __new__(cls, number: int, text: str) -> GrblError:
-        """Make the member of a number, with its text."""
-        member = int.__new__(cls, number)
-        member._value_ = number
-        member.text = text
-        return member
-
-
-class GrblAlarm(IntEnum):
+class GrblAlarm(Code):
     """Why the machine is locked: `ALARM:n`."""
 
     HARD_LIMIT = 1, "A limit switch was met, or a drive failed: the position may be lost"
@@ -56,15 +47,6 @@ class GrblAlarm(IntEnum):
     PROBE_NO_CONTACT = 5, "The probe met nothing within its travel"
     HOMING_RESET = 6, "Reset while homing"
     HOMING_FAILED = 9, "Homing found no switch"
-
-    text: str
-
-    def __new__(cls, number: int, text: str) -> GrblAlarm:
-        """Make the member of a number, with its text."""
-        member = int.__new__(cls, number)
-        member._value_ = number
-        member.text = text
-        return member
 
 
 class RefusedError(Exception):

@@ -8,12 +8,15 @@ import os
 import re
 from collections.abc import Callable
 from pathlib import Path
-from typing import Protocol, TypeVar
+from typing import TYPE_CHECKING
 
 from polycnc.errors import UsageError
-from polycnc.servers.machines import AS_USUAL, Treatment, notice_loss, peers_of
+from polycnc.servers.machines import AS_USUAL, Owner, Treatment, notice_loss, peers_of
 
-R = TypeVar("R")
+if TYPE_CHECKING:
+    from polycnc.servers.grbl._core import GrblCore
+    from polycnc.servers.grbl._watching import GrblWatch
+
 PORT = 8123
 _TURN_S = 0.01  # between two looks at what goes on, which is less than a sender's buffer lasts
 _PIECE_BYTES = 4096
@@ -26,30 +29,6 @@ _SILENT_S = 5.0
 _OTHER = b"[MSG:Another sender is connected]\r\n"
 
 
-class Owner(Protocol):
-    """Carry out what is asked between two cycles of a control."""
-
-    def submit(self, command: Callable[[], R], done: Callable[[R], None]) -> object:
-        """Carry out `command` and give its result to `done` in the event loop."""
-
-
-class Core(Protocol):
-    """What answers a sender; each returns what it gets."""
-
-    @property
-    def busy(self) -> bool:
-        """Whether something that was begun has not ended."""
-
-    def greet(self) -> bytes:
-        """Greet a sender."""
-
-    def receive(self, data: bytes) -> bytes:
-        """Take bytes."""
-
-    def turn(self) -> bytes:
-        """Go on when time has passed."""
-
-
 class GrblServer:
     """Let a sender reach `core`: one at a time on a TCP port (0: a free one), besides one on a pseudo terminal.
 
@@ -60,7 +39,7 @@ class GrblServer:
     def __init__(
         self,
         owner: Owner,
-        core: Core,
+        core: GrblCore | GrblWatch,
         *,
         address: str = "127.0.0.1",
         port: int = PORT,

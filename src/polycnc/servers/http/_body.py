@@ -8,7 +8,7 @@ from typing import Any, TypeVar
 from pydantic import BaseModel, ValidationError
 from starlette.requests import Request
 
-from polycnc.servers.commands import NotMeantError
+from polycnc.servers.commands import NotMeantError, told
 from polycnc.servers.http._guard import TooLargeError
 
 M = TypeVar("M", bound=BaseModel)
@@ -61,7 +61,20 @@ def checked(model: type[M], found: dict[str, Any]) -> M:
     try:
         return model.model_validate(found)
     except ValidationError as error:
-        first = error.errors(include_url=False, include_input=False, include_context=False)[0]
-        place = ".".join(str(each)[:32] for each in first["loc"])
-        takes = ", ".join(model.model_fields)
-        raise NotMeantError(f"{place}: {first['msg'][:200]}".lstrip(": "), f"It takes {takes}.") from None
+        raise NotMeantError(told(error), f"It takes {', '.join(model.model_fields)}.") from None
+
+
+async def text_of(request: Request, what: str, most_bytes: int) -> str:
+    """Return the text that a request brings.
+
+    Raises:
+        NotMeantError: It is none.
+        TooLargeError: It is too large.
+    """
+    content = await request.body()
+    if len(content) > most_bytes:
+        raise TooLargeError
+    try:
+        return content.decode("utf-8-sig")
+    except UnicodeDecodeError:
+        raise NotMeantError(f"the {what} is not UTF-8", "Send text.") from None

@@ -9,10 +9,8 @@ from pydantic import BaseModel, ConfigDict
 
 from polycnc.cnc import ControlError, Refusal
 from polycnc.errors import UsageError
-from polycnc.servers.commands import NotMeantError
-from polycnc.servers.http._body import checked, json_object
+from polycnc.servers.http._body import checked, json_object, text_of
 from polycnc.servers.http._found import ONE, Found, body
-from polycnc.servers.http._guard import TooLargeError
 from polycnc.servers.machines import ServedMachine
 from polycnc.servers.scenarios import Story, read_script
 
@@ -78,13 +76,7 @@ class ScenarioRoutes:
     async def put_scenario(self, machine: str, request: Request) -> ScenarioShown:
         """Read a scenario and follow it in place of the one before; a wrong one changes nothing."""
         found = self._found.machine(machine)
-        content = await request.body()
-        if len(content) > MOST_SCENARIO_BYTES:
-            raise TooLargeError
-        try:
-            source = content.decode("utf-8-sig")
-        except UnicodeDecodeError:
-            raise NotMeantError("the scenario is not UTF-8", "Send text.") from None
+        source = await text_of(request, "scenario", MOST_SCENARIO_BYTES)
 
         def begun() -> ScenarioShown:
             before = self._present(found)

@@ -8,10 +8,8 @@ from fastapi import APIRouter, Path, Query, Request, Response
 from pydantic import BaseModel, ConfigDict, Field
 
 from polycnc.cnc import ControlError, Refusal
-from polycnc.servers.commands import NotMeantError
-from polycnc.servers.http._body import checked, json_object
+from polycnc.servers.http._body import checked, json_object, text_of
 from polycnc.servers.http._found import ONE, Found, answer, body
-from polycnc.servers.http._guard import TooLargeError
 from polycnc.servers.machines import Screen, ScreenShown, ServedMachine, Tasks, TaskShown
 
 MOST_SOURCE_BYTES = 1 << 20
@@ -83,20 +81,14 @@ class ScreenRoutes:
     async def load(self, machine: str, task: _Task, request: Request) -> list[TaskShown]:
         """Compile a program and give it to a task, which stops; the answer is the tasks then."""
         found, tasks = self._tasks(machine)
-        content = await request.body()
-        if len(content) > MOST_SOURCE_BYTES:
-            raise TooLargeError
-        try:
-            source = content.decode("utf-8-sig")
-        except UnicodeDecodeError:
-            raise NotMeantError("the program is not UTF-8", "Send text.") from None
+        source = await text_of(request, "program", MOST_SOURCE_BYTES)
 
         def loaded() -> list[TaskShown]:
             tasks.load(task, source)
             return tasks.all()
 
         shown = await found.ask(loaded)
-        self._found.log.write("task", machine=machine, task=task, bytes=len(content))
+        self._found.log.write("task", machine=machine, task=task, bytes=len(await request.body()))
         return shown
 
     async def control(self, machine: str, task: _Task, request: Request) -> list[TaskShown]:

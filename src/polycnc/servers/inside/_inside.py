@@ -40,7 +40,7 @@ class Inside:
         """Forget a client, and let go what it has open."""
         found = self._clients.pop(client, None)
         if found is not None and found.caller is not None:
-            LIBRARIES[self._kind].end(found.caller.session)
+            found.caller.session.detach()
 
     def _find(self, name: str, packing: int) -> Caller | None:
         if not self.devices:

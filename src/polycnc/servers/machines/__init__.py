@@ -13,15 +13,15 @@ from polycnc.servers.machines._log import Log
 from polycnc.servers.machines._machine import (
     AS_USUAL,
     MachineError,
-    OpenDoor,
+    Made,
     ServedMachine,
     Treatment,
     machines_of_path,
     treatment_of,
 )
-from polycnc.servers.machines._owner import HostOwner, Keeper, Kept, Owner
+from polycnc.servers.machines._owner import HostOwner, Keeper, Owner
 from polycnc.servers.machines._programs import MemoryPrograms, Programs
-from polycnc.servers.machines._scenario import Nothing, Scenario, ServedDevice
+from polycnc.servers.machines._scenario import Scenario, ServedDevice
 from polycnc.servers.machines._screens import Screen, ScreenShown, Tasks, TaskShown
 from polycnc.servers.machines._turns import Turns
 from polycnc.servers.machines._values import (
@@ -34,7 +34,7 @@ from polycnc.servers.machines._values import (
     Values,
     no_such,
 )
-from polycnc.servers.machines._watch import BUSY_S, IDLE_S, Watch
+from polycnc.servers.machines._watch import BUSY_S, IDLE_S
 
 __all__ = [
     "AS_USUAL",
@@ -49,13 +49,11 @@ __all__ = [
     "DoorKind",
     "HostOwner",
     "Keeper",
-    "Kept",
     "Log",
     "MachineError",
+    "Made",
     "MemoryPrograms",
     "NamedValue",
-    "Nothing",
-    "OpenDoor",
     "Owner",
     "Patience",
     "Programs",
@@ -72,7 +70,6 @@ __all__ = [
     "Turns",
     "Values",
     "Wanted",
-    "Watch",
     "machines_of_path",
     "no_such",
     "notice_loss",

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, fields
 from pathlib import Path
-from typing import Any, Protocol, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from polycnc.cnc import Control
 from polycnc.errors import PolycncError
@@ -15,6 +15,9 @@ from polycnc.servers.machines._programs import MemoryPrograms, Programs
 from polycnc.servers.machines._scenario import ServedDevice
 from polycnc.servers.machines._screens import Screen, Tasks
 from polycnc.servers.machines._values import NO_PARAMETERS, NO_SIGNALS, NO_VARIABLES, Values
+
+if TYPE_CHECKING:
+    from polycnc.servers.machines._door import Door
 
 R = TypeVar("R")
 
@@ -34,51 +37,51 @@ def _as_usual(_: str) -> Treatment:
     return AS_USUAL
 
 
-class OpenDoor(Protocol):
-    """A door to a machine, as others see it."""
-
-    @property
-    def said(self) -> str:
-        """Where it is, as users write it: a URL or host:port; known after `start`."""
-
-    @property
-    def clients(self) -> list[str]:
-        """The addresses of the clients that are connected now."""
-
-
 class MachineError(PolycncError):
     """A machine whose time cannot pass any more."""
 
 
 @dataclass(slots=True)
-class ServedMachine:
-    """One device with a name; what its doors need of it.
+class Made:
+    """A device with its control and what its operator does in its own way.
 
-    `kind` is the controller ("fanuc", "plain", ...). `find_control` returns the control within the device, None for a
-    device without one. `own` are commands that the device carries out itself, by their names, in place of its control.
+    `find_control` returns the control within the device, None for a device without one. `own` are commands that the
+    device carries out itself, by their names, in place of its control. `end` switches the device off and keeps its
+    memory. `load` takes the name and bytes of a file over and selects the program; None where no part programs run.
+    `programs` are None where they are those of the control's memory as they come. `folder` is where the control keeps
+    its programs as files, if it does.
     """
 
-    name: str
-    kind: str
     device: Device[Any]
-    served: ServedDevice[Any]
-    keeper: Keeper
     find_control: Callable[[], Control] | None = None
     own: Mapping[str, Callable[..., object]] = field(default_factory=dict)
-    programs: Programs | None = None
     end: Callable[[], None] = lambda: None
-    """Switches the device off and keeps its memory."""
+    load: Callable[[str, bytes], None] | None = None
     parameters: Values = NO_PARAMETERS
     variables: Values = NO_VARIABLES
     signals: Values = NO_SIGNALS
     screen: Screen | None = None
     tasks: Tasks | None = None
+    programs: Programs | None = None
     folder: Path | None = None
-    """Where its control keeps its programs as files, if it does."""
+
+    def all(self) -> dict[str, Any]:
+        """Return its parts by their names."""
+        return {each.name: getattr(self, each.name) for each in fields(Made)}
+
+
+@dataclass(slots=True, kw_only=True)
+class ServedMachine(Made):
+    """One device with a name; what its doors need of it. `kind` is the controller ("fanuc", "plain", ...)."""
+
+    name: str
+    kind: str
+    served: ServedDevice[Any]
+    keeper: Keeper
     treat: Callable[[str], Treatment] = _as_usual
     """A door tells its name with every request, and does with it what is said."""
 
-    doors: dict[str, OpenDoor] = field(default_factory=dict)
+    doors: dict[str, Door] = field(default_factory=dict)
     """The doors to it by name, those that it shares with others among them."""
 
     def __post_init__(self) -> None:

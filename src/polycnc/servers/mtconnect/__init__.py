@@ -6,19 +6,10 @@ from polycnc.on_demand import names_on_demand
 from polycnc.servers.mtconnect._agent import Agent, Answer, StreamAsked
 from polycnc.servers.mtconnect._device import DeviceModel, Item, device_model, model_of, value_text
 from polycnc.servers.mtconnect._documents import Header, asset_text, devices_document
-from polycnc.servers.mtconnect._errors import AgentError, Code
+from polycnc.servers.mtconnect._errors import Code
 from polycnc.servers.mtconnect._observations import Buffer, Observation
-from polycnc.servers.mtconnect._query import Asked, asked_of
 from polycnc.servers.mtconnect._recorder import Change, Looked, Recorder, time_text
-from polycnc.servers.mtconnect._rows import (
-    CONDITIONS,
-    ROWS,
-    USUAL_VERSION,
-    VERSIONS,
-    ConditionRow,
-    Row,
-    Version,
-)
+from polycnc.servers.mtconnect._rows import CONDITIONS, ROWS, USUAL_VERSION, VERSIONS, Row, Version
 from polycnc.servers.mtconnect._xpath import PathError, choose, tree_of
 
 if TYPE_CHECKING:
@@ -30,13 +21,10 @@ __all__ = [
     "USUAL_VERSION",
     "VERSIONS",
     "Agent",
-    "AgentError",
     "Answer",
-    "Asked",
     "Buffer",
     "Change",
     "Code",
-    "ConditionRow",
     "DeviceModel",
     "Header",
     "Item",
@@ -48,7 +36,6 @@ __all__ = [
     "Row",
     "StreamAsked",
     "Version",
-    "asked_of",
     "asset_text",
     "choose",
     "device_model",

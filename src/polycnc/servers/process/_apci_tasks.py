@@ -47,8 +47,7 @@ class ApciTasks:
             raise ControlError(
                 Refusal.DATA, f"{len(errors)} errors: {first}"[:500], hint="Mend the first one."
             )
-        tasks = self._board.tasks
-        (tasks if isinstance(tasks, BoardTasks) else BoardTasks(self._board)).load(program)
+        (self._tasks() or BoardTasks(self._board)).load(program)
 
     def control(self, task: int, what: str) -> None:
         """Start, stop or continue a task."""
@@ -61,9 +60,9 @@ class ApciTasks:
             )
         {"start": tasks.startcnct, "stop": tasks.stopcnct, "continue": tasks.contcnct}[what](task)
 
-    def _tasks(self) -> sap.Tasks | None:
+    def _tasks(self) -> BoardTasks | None:
         tasks = self._board.tasks
-        return tasks.tasks if isinstance(tasks, BoardTasks) else None
+        return tasks if isinstance(tasks, BoardTasks) else None
 
 
 def _check(task: int) -> None:

@@ -9,10 +9,10 @@ from polycnc.controllers.bosch import Pnc
 from polycnc.controllers.bosch.ncs import Mode as BoschMode
 from polycnc.errors import UsageError
 from polycnc.nc import ProgramText
-from polycnc.servers.machines import ReadValues
+from polycnc.servers.machines import Made, ReadValues
 from polycnc.servers.process._bosch_screen import BoschScreen
 from polycnc.servers.process._io_values import IoValues
-from polycnc.servers.process._made import Machinery, Made
+from polycnc.servers.process._machinery import Machinery
 
 
 def make_bosch(wanted: Machinery) -> Made:

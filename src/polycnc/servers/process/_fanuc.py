@@ -9,11 +9,11 @@ from polycnc.cnc import Mode, Step
 from polycnc.controllers.fanuc import PowerMate, PowerMateMode
 from polycnc.errors import UsageError
 from polycnc.servers.focas import numbered
-from polycnc.servers.machines import MemoryPrograms
+from polycnc.servers.machines import Made, MemoryPrograms
 from polycnc.servers.process._fanuc_programs import FanucPrograms
 from polycnc.servers.process._fanuc_signals import FanucSignals
 from polycnc.servers.process._fanuc_values import FanucParameters, FanucVariables, set_offset, set_tool
-from polycnc.servers.process._made import Machinery, Made
+from polycnc.servers.process._machinery import Machinery
 
 
 def make_fanuc(wanted: Machinery) -> Made:

@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 
 from polycnc.cnc import ChannelData, Control
-from polycnc.servers.machines import MemoryPrograms
+from polycnc.servers.machines import Made, MemoryPrograms
 from polycnc.servers.process._io_values import IoValues
-from polycnc.servers.process._made import Machinery, Made
+from polycnc.servers.process._machinery import Machinery
 from polycnc.servers.process._plain_values import MacroValues, PlainParameters
 
 

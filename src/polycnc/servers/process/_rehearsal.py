@@ -8,7 +8,7 @@ from pathlib import Path
 
 from polycnc.machine import Wall
 from polycnc.servers.machines import Log, ServedMachine
-from polycnc.servers.process._made import Machinery
+from polycnc.servers.process._machinery import Machinery
 from polycnc.servers.process._serving import MachineWanted, Serving
 from polycnc.servers.scenarios import Happened, Script, Story
 

@@ -16,6 +16,7 @@ from polycnc.servers.machines import (
     DoorKind,
     Keeper,
     Log,
+    Made,
     Scenario,
     ServedDevice,
     ServedMachine,
@@ -25,14 +26,13 @@ from polycnc.servers.machines import (
     tell_errors,
 )
 from polycnc.servers.process._kinds import KINDS
-from polycnc.servers.process._made import Machinery, Made
+from polycnc.servers.process._machinery import Machinery
 
 _SHARE_S = 0.01  # of the wall clock that all machines together may take before a door answers
 _LEAST_SHARE_S = 0.002  # of one machine: more than what it does at once costs
 _APART_S, _MOST_APART_S = 0.1, 5.0  # the beginnings of two machines, and of the first and the last
 _CLOSE_S = 0.6  # that doors have to end their connections
 _MOST_PROGRAM_BYTES = 64 << 20
-Load = Callable[[str, bytes], None]
 
 
 @dataclass(frozen=True, slots=True)
@@ -60,10 +60,9 @@ class Serving:
     on_late: Callable[[float], None]
     on_error: Callable[[str], None] = lambda text: None
     machines: list[ServedMachine] = field(default_factory=list)
-    doors: list[tuple[str, Door]] = field(default_factory=list)
-    served_by: list[Sequence[ServedMachine]] = field(default_factory=list)
-    """The machines of each door."""
-    programs: dict[str, tuple[Load, Path]] = field(default_factory=dict)
+    doors: list[tuple[str, Door, Sequence[ServedMachine]]] = field(default_factory=list)
+    """Each with the machines that it serves."""
+    programs: dict[str, Path] = field(default_factory=dict)
     told: set[str] = field(default_factory=set)
     """Kinds of errors that `on_error` has been told of, once each."""
 
@@ -92,15 +91,10 @@ class Serving:
                 )
             door = kind.open_door(machines, at)
             await door.start()
-            self.doors.append((kind.name, door))
+            self.doors.append((kind.name, door, machines))
             for machine in machines:
                 machine.doors[kind.name] = door
-            self.served_by.append(machines)
             self.log.write("open", door=kind.name, address=door.said)
-
-    def doors_of_machines(self) -> list[tuple[str, Door, Sequence[ServedMachine]]]:
-        """Return the doors, each with its machines."""
-        return [(*door, machines) for door, machines in zip(self.doors, self.served_by, strict=True)]
 
     async def begin(self) -> None:
         """Start the programs and let time begin; what has to be compiled is compiled here.
@@ -120,7 +114,7 @@ class Serving:
         """Start the programs, without letting time pass."""
         for machine in self.machines:
             if (found := self.programs.get(machine.name)) is not None:
-                _start(machine, *found)
+                _start(machine, found)
 
     async def run(self) -> None:
         """Serve until the time of a machine cannot pass any more, or this is cancelled."""
@@ -133,7 +127,7 @@ class Serving:
     async def close(self) -> None:
         """Close every door, all at once, and switch the machines off; a door that takes its time is not waited for."""
         tell_errors(asyncio.get_running_loop(), lambda kind, text: self.log.write(kind, text=text))
-        closing = [asyncio.ensure_future(door.close()) for _, door in self.doors]
+        closing = [asyncio.ensure_future(door.close()) for _, door, _ in self.doors]
         if closing:
             await asyncio.wait(closing, timeout=_CLOSE_S)
         for machine in self.machines:
@@ -163,7 +157,7 @@ class Serving:
                 raise UsageError(
                     f"machine {name} runs no part programs", hint="Leave the program out, or serve another."
                 )
-            self.programs[name] = made.load, wanted.program
+            self.programs[name] = wanted.program
         served: ServedDevice[Any] = ServedDevice(
             made.device,
             made.find_control,
@@ -173,23 +167,7 @@ class Serving:
         keeper = Keeper(
             served, self.wall, rate=wanted.rate, share_s=share_s, on_late=self.on_late, turns=turns
         )
-        machine = ServedMachine(
-            name,
-            wanted.kind,
-            made.device,
-            served,
-            keeper,
-            made.find_control,
-            made.own,
-            made.programs,
-            made.end,
-            made.parameters,
-            made.variables,
-            made.signals,
-            made.screen,
-            made.tasks,
-            made.folder,
-        )
+        machine = ServedMachine(**made.all(), name=name, kind=wanted.kind, served=served, keeper=keeper)
         self.machines.append(machine)
         if wanted.story is not None:
             served.follow(wanted.story(machine, self.log))
@@ -209,7 +187,7 @@ def _again(made: Made) -> Callable[[], None]:
     return again
 
 
-def _start(machine: ServedMachine, load: Load, path: Path) -> None:
+def _start(machine: ServedMachine, path: Path) -> None:
     """Let a machine take a program over, and start it."""
     try:
         if path.stat().st_size > _MOST_PROGRAM_BYTES:
@@ -219,7 +197,8 @@ def _start(machine: ServedMachine, load: Load, path: Path) -> None:
         content = path.read_bytes()
     except OSError as error:
         raise UsageError(f"{path}: cannot be read: {error.strerror}", hint="Name a program file.") from None
-    load(path.name, content)
     again = machine.served.again
+    assert machine.load is not None
     assert again is not None
+    machine.load(path.name, content)
     again()

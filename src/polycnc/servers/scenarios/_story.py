@@ -11,6 +11,7 @@ from pydantic import ValidationError
 
 from polycnc.errors import PolycncError, UsageError
 from polycnc.machine import StrictModel
+from polycnc.servers.commands import told
 from polycnc.servers.focas import Fault, FaultKind, Faults, Plan
 from polycnc.servers.machines import Log, ServedMachine, Treatment
 from polycnc.servers.scenarios._actions import ACTIONS, DOORS, Action, Undo, fault_of
@@ -279,11 +280,7 @@ def _course(step: Step, machine: ServedMachine) -> _Course:
             if step.when is not None:
                 read_path(machine.control.status(), step.when.value)
     except ValidationError as error:
-        first = error.errors(include_url=False, include_input=False, include_context=False)[0]
-        place = ".".join(map(str, first["loc"]))
-        raise UsageError(
-            f"step '{step.name}': {place}: {first['msg'][:200]}", hint="See its row in the reference."
-        ) from None
+        raise UsageError(f"step '{step.name}': {told(error)}", hint="See its row in the reference.") from None
     except PolycncError as error:
         raise UsageError(f"step '{step.name}': {error.what}", hint=error.hint) from None
     return _Course(step, action, values)

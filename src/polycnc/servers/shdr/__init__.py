@@ -1,6 +1,6 @@
 """SHDR: a machine as an adapter that a foreign MTConnect agent reads."""
 
-from polycnc.servers.shdr._lines import PONG_MS, Adapter, Session, line_of
+from polycnc.servers.shdr._lines import Adapter, Session
 from polycnc.servers.shdr._server import PORT, ShdrServer
 
-__all__ = ["PONG_MS", "PORT", "Adapter", "Session", "ShdrServer", "line_of"]
+__all__ = ["PORT", "Adapter", "Session", "ShdrServer"]

@@ -12,10 +12,11 @@ from polycnc.controllers.apci.board._motor_command import MotorCommand
 from polycnc.controllers.apci.board._parameter import Parameter
 from polycnc.controllers.apci.board._system_file import SystemFile
 from polycnc.controllers.apci.board._units import seconds
+from polycnc.controllers.apci.core._command_port import write_command
 from polycnc.controllers.apci.core._compiled_entries import change_override
 from polycnc.controllers.apci.core._motion import profile_velocity
 from polycnc.controllers.apci.core._registers import Axst, Digi, assigned_inputs
-from polycnc.controllers.apci.core._state import BoardState
+from polycnc.controllers.apci.core._state import MOVE, SPOOL_BYTES, SPOOL_ENTRIES, TABLE, BoardState
 from polycnc.controllers.apci.core._status_word import status_word
 from polycnc.kernel import ADDED, SHORT_OVERSHOOT, KernelState, move_to
 
@@ -137,13 +138,26 @@ class Axis:
 
     @property
     def rp(self) -> float:
-        """Actual position."""
+        """Actual position; written with the loop open only, that shifts the machine zero (Manual 002, 4.4.167)."""
         return float(self._kernel.servo.actual[self.index] - self.row["shift"]) - self.origin
+
+    @rp.setter
+    def rp(self, position: float) -> None:
+        if not self.row["closed"] and math.isfinite(position):
+            self.row["zero"] = self.rp + float(self.row["zero"]) - position
+            self.row["referenced"] = 0
 
     @property
     def dp(self) -> float:
-        """Setpoint position."""
+        """Setpoint position; written with the loop closed only, the axis goes there at once (Manual 002, 4.4.140)."""
         return float(self._kernel.setpoint[self.index] - self.row["shift"]) - self.origin
+
+    @dp.setter
+    def dp(self, position: float) -> None:
+        row = self.row
+        if row["closed"] and row["pe"] and not row["past"] and math.isfinite(position):
+            added = float(self._kernel.ptp.row[ADDED, self.index]["position"])
+            self._kernel.base[self.index] = position + self.origin - added
 
     @property
     def rv(self) -> float:
@@ -156,8 +170,8 @@ class Axis:
         return self.profile_velocity() * self.time_unit_s
 
     @property
-    def position_error(self) -> float:
-        """Setpoint less actual position."""
+    def PosErr(self) -> float:  # noqa: N802  the manual's name
+        """Position error: setpoint less actual position."""
         return float(self.servo["following_error"])
 
     @property
@@ -227,18 +241,18 @@ class Axis:
 
     @property
     def mcp(self) -> int:
-        """Motor command port (Manual 002, 4.4.88 and 4.4.162)."""
+        """Motor command port; what is written lasts while the loop is open (Manual 002, 4.4.88 and 4.4.162)."""
         if not self.row["closed"]:
             return int(self.row["mcp"])
         return self._motor.counts_for(float(self.servo["output"]))
 
+    @mcp.setter
+    def mcp(self, counts: int) -> None:
+        write_command(self._state, self._kernel, self.index, counts)
+
     def step_frequency_hz(self, mcp: int) -> float:
         """Return the signed step frequency of a stepper's motor command."""
         return self._motor.step_frequency_hz(mcp)
-
-    def check_configuration(self, planned: SystemFile) -> None:
-        """Compare the board with the system file that was loaded."""
-        self.row["cef"] = bool(planned.differences(self._config))
 
     # ------------------------------------------------------------------ status
 
@@ -285,3 +299,27 @@ class Axis:
     def queued(self) -> int:
         """Entries in the spooler."""
         return int(self.row["tail"] - self.row["head"])
+
+    @property
+    def lsm(self) -> int:
+        """Free memory of the spooler, bytes (Manual 002, 4.4.84)."""
+        return SPOOL_BYTES - int(self.row["used"])
+
+    @property
+    def MCiS(self) -> int:  # noqa: N802  the manual's name
+        """Motion commands in the spooler (Manual 002, 4.4.87)."""
+        state, row = self._state, self.row
+        entries = (
+            state.ring[self.index, k % SPOOL_ENTRIES] for k in range(int(row["head"]), int(row["tail"]))
+        )
+        return sum(state.entry[int(e)]["kind"] in (MOVE, TABLE) for e in entries)
+
+    @property
+    def PcapIndex(self) -> int:  # noqa: N802  the manual's name
+        """Index of the spooled command that is being executed, -1 until one with an index has been."""
+        return int(self.row["pcap_index"])
+
+    @property
+    def ZeroOffset(self) -> float:  # noqa: N802  the manual's name
+        """Zero offset in force."""
+        return float(self.row["offset"])

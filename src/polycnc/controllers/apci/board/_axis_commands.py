@@ -6,7 +6,6 @@ import math
 from collections.abc import Sequence
 
 from polycnc.controllers.apci.board._commanded import CommandedBoard
-from polycnc.controllers.apci.core._command_port import set_command
 from polycnc.controllers.apci.core._compiled_entries import go_on_with, stand
 from polycnc.controllers.apci.core._registers import ModeReg
 from polycnc.kernel import ADDED
@@ -64,15 +63,10 @@ def _open(board: CommandedBoard, i: int) -> None:
     row["closed"] = row["held"] = 0
     if row["stepper"]:
         row["referenced"] = 0
-    write_mcp(board, i, 0)
+    board.axes[i].mcp = 0
     servo = board.kernel.servo.row[i]
     servo["loop_closed"] = 0
     servo["output"] = 0.0
-
-
-def write_mcp(board: CommandedBoard, i: int, value: int) -> None:
-    """Write the motor command port; it lasts while the loop is open (Manual 002, 4.4.162)."""
-    set_command(board.state, board.kernel, i, value)
 
 
 def ra(board: CommandedBoard, axes: Sequence[int]) -> None:
@@ -98,7 +92,7 @@ def rs(board: CommandedBoard) -> None:
     for axis in board.axes:
         _open(board, axis.index)
         _clear(board, axis.index)
-        axis.check_configuration(board.planned)
+        axis.row["cef"] = bool(board.planned.differences(board.config))
     board.outputs = board.config.outputs_at_reset
     board.trovr = 1.0
     if board.tasks is not None:
@@ -139,23 +133,6 @@ def shp(board: CommandedBoard, i: int, position: float) -> None:
     row["referenced"] = 1
 
 
-def write_rp(board: CommandedBoard, i: int, position: float) -> None:
-    """Write the actual position register, with the loop open (Manual 002, 4.4.167)."""
-    axis = board.axes[i]
-    row = axis.row
-    if not row["closed"] and math.isfinite(position):
-        row["zero"] = axis.rp + float(row["zero"]) - position
-        row["referenced"] = 0
-
-
-def write_dp(board: CommandedBoard, i: int, position: float) -> None:
-    """Write the setpoint, with the loop closed; the axis goes there at once (Manual 002, 4.4.140)."""
-    axis = board.axes[i]
-    if axis.row["closed"] and axis.row["pe"] and not axis.row["past"] and math.isfinite(position):
-        added = float(board.kernel.ptp.row[ADDED, i]["position"])
-        board.kernel.base[i] = position + axis.origin - added
-
-
 def azo(board: CommandedBoard, number: int) -> None:
     """Put zero offsets 0 to 4 in force for all axes, none for a higher number (Manual 002, 4.4.3)."""
     for axis in board.axes:
@@ -181,6 +158,14 @@ def lps(board: CommandedBoard, i: int, scans: int) -> None:
     if scans >= 0:
         row = board.state.axis[i]
         row["latch_scans"], row["latch_count"] = scans, 0
+
+
+def lprs(board: CommandedBoard, axes: Sequence[int], *, every: int = 1) -> None:
+    """Record setpoint, actual position and commanded velocity of `axes` every so many scans (Manual 002, 4.4.26)."""
+    row = board.state.board[0]
+    row["record_axes"] = sum({1 << i for i in axes})
+    row["record_every"] = max(every, 1)
+    row["record_count"] = row["recorded"] = 0
 
 
 def utrovr(board: CommandedBoard, axes: Sequence[int]) -> None:

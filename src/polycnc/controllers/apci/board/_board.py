@@ -9,7 +9,6 @@ from polycnc.controllers.apci.board._setup import load_parameters, set_up_plant
 from polycnc.controllers.apci.board._status import BoardStatus, board_status
 from polycnc.controllers.apci.board._system_file import SystemFile
 from polycnc.controllers.apci.core._scan import INTERRUPT, NO_TURNS, PROFILE_END, RESET, run_scans
-from polycnc.controllers.apci.core._state import Floats
 from polycnc.machine import PIECE_CYCLES, Snapshot, wait
 
 
@@ -43,17 +42,6 @@ class Board(CommandedBoard):
     def time_s(self) -> float:
         """Time since the board was booted."""
         return self.clock.now_s
-
-    def start_analysis(self, axes: tuple[int, ...], *, every: int = 1) -> None:
-        """Record setpoint, actual position and commanded velocity of `axes`, in every so many scans."""
-        row = self.state.board[0]
-        row["record_axes"] = sum(1 << i for i in axes)
-        row["record_every"] = max(every, 1)
-        row["record_count"] = row["recorded"] = 0
-
-    def analysis(self, i: int) -> Floats:
-        """Return what was recorded of an axis, one row a time: machine positions, and a velocity."""
-        return self.state.analysis[: self.state.board[0]["recorded"], i].copy()
 
     def advance(self, cycles: int, *, until: int | None = None) -> int:
         """Run up to `cycles` scans; return how many were run.

@@ -8,9 +8,7 @@ from typing import Any, Protocol
 
 from polycnc.controllers.apci.board._environment import InterfaceStatus
 from polycnc.controllers.apci.core._state import Whole
-
-COMMON_BUFFER_BYTES = 1000
-CNC_TASKS = 4
+from polycnc.controllers.apci.core._turn_state import BUFFER_BYTES, TASKS
 
 
 class Tasks(Protocol):
@@ -51,6 +49,4 @@ class Variables:
     ledyl: int = 0
     irqpc: int = 0
     interface: InterfaceStatus = field(default_factory=InterfaceStatus)  # ifs
-    buffers: list[bytearray] = field(
-        default_factory=lambda: [bytearray(COMMON_BUFFER_BYTES) for _ in range(CNC_TASKS)]
-    )
+    buffers: list[bytearray] = field(default_factory=lambda: [bytearray(BUFFER_BYTES) for _ in range(TASKS)])

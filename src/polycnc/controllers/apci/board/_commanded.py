@@ -36,6 +36,20 @@ class BoardAxis(Axis):
         )
         self.board = board
 
+    @property
+    def digo(self) -> int:
+        """Digital outputs: those of the board, whatever the axis."""
+        return self.board.outputs
+
+    @digo.setter
+    def digo(self, value: int) -> None:
+        self.board.outputs = value
+
+    @property
+    def ifs(self) -> int:
+        """State of the board's interfaces."""
+        return int(self.board.variables.interface.word)
+
 
 class CommandedBoard:
     """A board as its system file describes it, without its time; `record_scans` as for `Board`."""

@@ -18,6 +18,7 @@ from polycnc.controllers.apci.board._units import (
     PathUnits,
     PositionUnit,
     TimeUnit,
+    ratio,
     seconds,
 )
 from polycnc.controllers.apci.core._registers import ModeReg
@@ -43,33 +44,36 @@ def path_units(board: CommandedBoard, axes: Sequence[int]) -> PathUnits | None:
 
 def trajectory_units(board: CommandedBoard) -> tuple[float, float]:
     """Return path units/s and path units/s2 per unit of velocity and acceleration, whatever the axes."""
-    variables = board.variables
-    if (
-        variables.pu not in PositionUnit.__members__.values()
-        or variables.tu not in TimeUnit.__members__.values()
-    ):
+    chosen = _chosen(board)
+    if chosen is None:
         return 1.0, 1.0
-    unit = PositionUnit(variables.pu)
-    length = MILLIMETRES.get(unit) or DEGREES.get(unit) or 1.0
-    time_s = seconds(TimeUnit(variables.tu), board.config.sample_time_s)
+    _, length, time_s = chosen
     return length / time_s, length / (time_s * time_s)
 
 
-def _units(board: CommandedBoard, axes: Sequence[int]) -> PathUnits | None:
-    variables = board.variables
-    if (
-        variables.pu not in PositionUnit.__members__.values()
-        or variables.tu not in TimeUnit.__members__.values()
-    ):
+def _chosen(board: CommandedBoard) -> tuple[PositionUnit, float, float] | None:
+    """Return the unit of position, how many path units and how many seconds the units in force are, if they exist."""
+    pu, tu = board.variables.pu, board.variables.tu
+    if pu not in PositionUnit.__members__.values() or tu not in TimeUnit.__members__.values():
         return None
-    unit = PositionUnit(variables.pu)
+    unit = PositionUnit(pu)
+    length = MILLIMETRES.get(unit) or DEGREES.get(unit) or 1.0
+    return unit, length, seconds(TimeUnit(tu), board.config.sample_time_s)
+
+
+def _units(board: CommandedBoard, axes: Sequence[int]) -> PathUnits | None:
+    chosen = _chosen(board)
+    if chosen is None:
+        return None
+    unit, length, _ = chosen
+    of_length = PositionUnit.mm if unit in MILLIMETRES else PositionUnit.counts
+    measure = PositionUnit.deg if unit in DEGREES else of_length
     weight = np.ones(len(axes))
     distance = np.ones(len(axes))
-    length = MILLIMETRES.get(unit) or DEGREES.get(unit) or 1.0
     for k, i in enumerate(axes):
         axis = board.axes[i]
         own = axis.setup.position_unit
-        per_unit = _weight(axis.counts_per_unit, own, unit)
+        per_unit = ratio(own, measure, axis.counts_per_unit)
         distance[k] = length
         if per_unit is None and own in DEGREES and unit in MILLIMETRES and axis.effradius > 0.0:
             per_unit = DEGREES[own] * math.radians(1.0) * axis.effradius * length
@@ -78,15 +82,4 @@ def _units(board: CommandedBoard, axes: Sequence[int]) -> PathUnits | None:
         if per_unit is None:
             return None
         weight[k] = per_unit
-    time_s = seconds(TimeUnit(variables.tu), board.config.sample_time_s)
-    return PathUnits(length / time_s, length / (time_s * time_s), np.array(axes, np.int64), weight, distance)
-
-
-def _weight(counts_per_unit: float, own: PositionUnit, unit: PositionUnit) -> float | None:
-    """Return path units per unit of an axis, None if they are of different kinds."""
-    for kind in (MILLIMETRES, DEGREES):
-        if own in kind and unit in kind:
-            return kind[own]
-    if unit in (PositionUnit.counts, PositionUnit.steps):
-        return 1.0 if own in (PositionUnit.counts, PositionUnit.steps) else counts_per_unit
-    return None
+    return PathUnits(*trajectory_units(board), np.array(axes, np.int64), weight, distance)

@@ -62,7 +62,7 @@ def load_parameters(board: CommandedBoard, system: SystemFile) -> None:
             setattr(axis, name, getattr(setup, name))
         axis.row["soft_left"] = _LIMIT_FUNCTIONS[setup.soft_left]
         axis.row["soft_right"] = _LIMIT_FUNCTIONS[setup.soft_right]
-        axis.check_configuration(system)
+        axis.row["cef"] = bool(system.differences(board.config))
         if not setup.mcp_limits_are_possible:
             board.raise_error(ErrorReg.LimitDefError)
         axis.update_filter()

@@ -22,7 +22,6 @@ from polycnc.controllers.apci.core._state import (
     MOVE,
     POINTS,
     SPECIAL,
-    SPOOL_BYTES,
     SPOOL_ENTRIES,
     TABLE,
     WAITING,
@@ -170,18 +169,3 @@ def add_points(board: CommandedBoard, i: int, points: Sequence[float], *, relati
     if queue_entry(state, e, trajectory_units(board)[0]):
         for k, value in enumerate(points):
             state.points[i, (first + k) % POINTS] = value if relative else value + axis.origin
-
-
-def free_bytes(board: CommandedBoard, i: int) -> int:
-    """Return the free spooler memory of an axis (Manual 002, 4.4.84)."""
-    return SPOOL_BYTES - int(board.state.axis[i]["used"])
-
-
-def moves_queued(board: CommandedBoard, i: int) -> int:
-    """Return the number of motion commands in the spooler of an axis (Manual 002, 4.4.87)."""
-    state, row = board.state, board.state.axis[i]
-    kinds = (
-        state.entry[int(state.ring[i, count % SPOOL_ENTRIES])]["kind"]
-        for count in range(int(row["head"]), int(row["tail"]))
-    )
-    return sum(kind in (MOVE, TABLE) for kind in kinds)

@@ -22,19 +22,13 @@ def velocity_of(b: BoardState, i: int, counts: int) -> float:
     return float(velocity if counts > 0 else -velocity)
 
 
-@compiled
+@entry
 def write_command(b: BoardState, state: KernelState, i: int, counts: int) -> None:
     """Write the port of axis `i`; without effect while the controller writes it (Manual 002, 4.4.162)."""
     row = b.axis[i]
     if row["closed"] == 0:
         row["mcp"] = min(max(counts, row["mcp_low"]), row["mcp_high"])
         state.servo.row[i]["command"] = velocity_of(b, i, int(row["mcp"]))
-
-
-@entry
-def set_command(b: BoardState, state: KernelState, i: int, counts: int) -> None:
-    """Write the port of axis `i`."""
-    write_command(b, state, i, counts)
 
 
 @compiled

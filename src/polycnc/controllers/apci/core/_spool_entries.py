@@ -32,8 +32,8 @@ _LOOK_AHEAD = int(ModeReg.lookahead)
 _MAX_CHECK = int(ModeReg.maxcheck)
 
 
-@compiled
-def take_entry(b: BoardState) -> int:
+@entry
+def new_entry(b: BoardState) -> int:
     """Take an entry from the free list; -1, with the reason in the error register, if there is none."""
     board = b.board[0]
     if board["free"] <= 0:
@@ -49,12 +49,6 @@ def take_entry(b: BoardState) -> int:
     row["begun"] = 0
     row["points"] = 0
     return e
-
-
-@entry
-def new_entry(b: BoardState) -> int:
-    """Take an entry from the free list; -1, with the reason in the error register, if there is none."""
-    return take_entry(b)
 
 
 @entry
@@ -74,9 +68,9 @@ def rest_position(b: BoardState, base: Floats, i: int) -> float:
     return position_at(b, i, place)
 
 
-@compiled
-def position_behind_queue(b: BoardState, base: Floats, i: int) -> float:
-    """Return the machine position of axis `i` after everything it has queued."""
+@entry
+def queued_position(b: BoardState, base: Floats, i: int) -> float:
+    """Return the machine position of axis `i` after everything it has queued; `base[n]` are those they have now."""
     row = b.axis[i]
     for count in range(row["tail"] - 1, row["head"] - 1, -1):
         e = int(b.ring[i, count % SPOOL_ENTRIES])
@@ -87,12 +81,6 @@ def position_behind_queue(b: BoardState, base: Floats, i: int) -> float:
         if b.entry[e]["kind"] == TABLE:
             return float(b.entry[e]["value"])
     return rest_position(b, base, i)
-
-
-@entry
-def queued_position(b: BoardState, base: Floats, i: int) -> float:
-    """Return the machine position of axis `i` after everything it has queued; `base[n]` are those they have now."""
-    return position_behind_queue(b, base, i)
 
 
 @compiled
@@ -112,8 +100,8 @@ def _refusal(b: BoardState, e: int) -> int:
     return 0
 
 
-@compiled
-def put_into_queues(b: BoardState, e: int, velocity_unit: float) -> bool:
+@entry
+def queue_entry(b: BoardState, e: int, velocity_unit: float) -> bool:
     """Put entry `e` at the end of the queues of its axes; False, with nothing queued, if one does not take it."""
     board, this = b.board[0], b.entry[e]
     refusal = _refusal(b, e)
@@ -140,12 +128,6 @@ def look_again(b: BoardState, mask: int, velocity_unit: float) -> None:
     for i in range(b.axis.shape[0]):
         if mask >> i & 1 and look_ahead(b, i, velocity_unit):
             b.board[0]["error_register"] |= _TOO_LESS
-
-
-@entry
-def queue_entry(b: BoardState, e: int, velocity_unit: float) -> bool:
-    """Put entry `e` at the end of the queues of its axes; False, with nothing queued, if one does not take it."""
-    return put_into_queues(b, e, velocity_unit)
 
 
 @entry
@@ -208,7 +190,7 @@ def spool_move(
     fill_move(b, e, axes, weight, ac, vl, tvl)
     if b.seg.row[e]["kind"] == LINE and b.board[0]["mode_register"] & _MAX_CHECK:
         _keep_axis_limits(b, e, axes, velocity_unit, acceleration_unit)
-    return put_into_queues(b, e, velocity_unit)
+    return queue_entry(b, e, velocity_unit)
 
 
 @entry
@@ -227,7 +209,7 @@ def spool_line(
     index: int,
 ) -> bool:
     """Queue a straight line of `axes` to `ends`, path units from the axes' origins or from where their queues end."""
-    e = take_entry(b)
+    e = new_entry(b)
     if e < 0:
         return False
     start, end = b.work[0], b.work[1]
@@ -236,7 +218,7 @@ def spool_line(
         end[i] = 0.0
     for k in range(axes.shape[0]):
         i = axes[k]
-        start[i] = position_behind_queue(b, base, i) * weight[k]
+        start[i] = queued_position(b, base, i) * weight[k]
         end[i] = ends[k] + (start[i] if relative else (b.axis[i]["zero"] + b.axis[i]["offset"]) * weight[k])
     if not line_between(b, e, start, end):
         give_back(b, e)

@@ -6,13 +6,15 @@ A number that is not finite or beyond `LARGEST` is refused with code 1, before a
 from __future__ import annotations
 
 import ctypes
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Annotated, Any, TypeAlias
 
+from polycnc.controllers.apci.board._board import Board
 from polycnc.controllers.apci.board._environment import InterruptRoutine
 from polycnc.controllers.apci.board._numbers import is_number
 from polycnc.controllers.apci.board._records import AS, CBCNCT, CDBUF, CIBUF, CNCTS, ROSI, TSRP
-from polycnc.controllers.apci.library._session import UNKNOWN_ERROR, Session
+from polycnc.controllers.apci.library._session import UNKNOWN_ERROR, Selection, Session
 from polycnc.controllers.library import (
     INOUT,
     OUT,
@@ -25,6 +27,7 @@ from polycnc.controllers.library import (
     Out,
     Pointer,
     Refused,
+    named,
 )
 from polycnc.controllers.library import Real as AnyReal
 from polycnc.controllers.library import Text as AnyText
@@ -98,3 +101,15 @@ polled_axis_call = LIBRARY.through(Session.polled_axis, INT)
 record_call = LIBRARY.through(Session.named_in, TSRP)
 filled_call = LIBRARY.through(Session.polled_in, Annotated[TSRP, INOUT])
 axes_call = LIBRARY.through(Session.selected, AS, name="as")
+
+
+def axes_order(
+    command: Callable[[Board, tuple[int, ...]], object], what: str, section: int
+) -> Callable[[AS], None]:
+    """Make the function that gives the selected axes a command of the board, by the command's name."""
+
+    def order(asel: Selection) -> None:
+        asel.order(command)
+
+    text = f"{what} (Manual 002, 4.4.{section})."
+    return axes_call(named(order, command.__name__, text, {"asel": Selection}))

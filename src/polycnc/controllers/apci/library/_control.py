@@ -1,6 +1,6 @@
 """Opening and closing the loops, resetting, machine zero and zero offsets, overrides (Manual 002, 4.4.3 to 4.4.132)."""
 
-# ruff: noqa: N802  the names are the manual's
+# ruff: noqa: E501, N802  the names are the manual's
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from polycnc.controllers.apci.library._call import (
     DOUBLE,
     INT,
     LIBRARY,
-    axes_call,
+    axes_order,
     axis_call,
     board_call,
     record_call,
@@ -21,29 +21,13 @@ from polycnc.controllers.apci.library._call import (
 from polycnc.controllers.apci.library._session import UNKNOWN_ERROR, Exchange, Selection, Session
 from polycnc.controllers.library import Refused
 
-
-@axes_call
-def cl(asel: Selection) -> None:
-    """Close the position loops of the selected axes; each stays where it is (Manual 002, 4.4.8)."""
-    asel.order(commands.cl)
-
-
-@axes_call
-def clv(asel: Selection) -> None:
-    """Close the position loops; each selected axis goes on with its actual velocity (Manual 002, 4.4.9)."""
-    asel.order(commands.clv)
-
-
-@axes_call
-def ol(asel: Selection) -> None:
-    """Open the position loops of the selected axes: 0 V or 0 Hz, PAE outputs off (Manual 002, 4.4.41)."""
-    asel.order(commands.ol)
-
-
-@axes_call
-def ra(asel: Selection) -> None:
-    """Reset the selected axes; parameters stay (Manual 002, 4.4.42)."""
-    asel.order(commands.ra)
+# fmt: off
+cl  = axes_order(commands.cl,  "Close the position loops of the selected axes; each stays where it is",                   8)
+clv = axes_order(commands.clv, "Close the position loops; each selected axis goes on with its actual velocity",           9)
+ol  = axes_order(commands.ol,  "Open the position loops of the selected axes: 0 V or 0 Hz, PAE outputs off",             41)
+ra  = axes_order(commands.ra,  "Reset the selected axes; parameters stay",                                               42)
+utrovr = axes_order(commands.utrovr, "Put the trajectory override in force for the selected axes, together",            132)
+# fmt: on
 
 
 @board_call
@@ -85,12 +69,6 @@ def szpa(an: BoardAxis, Position: DOUBLE) -> None:  # noqa: N803
 def szpr(an: BoardAxis, Position: DOUBLE) -> None:  # noqa: N803
     """Move the virtual zero of an axis by `Position` (Manual 002, 4.4.128)."""
     commands.szpr(an.board, an.index, Position)
-
-
-@axes_call
-def utrovr(asel: Selection) -> None:
-    """Put the trajectory override in force for the selected axes, together (Manual 002, 4.4.132)."""
-    asel.order(commands.utrovr)
 
 
 # fmt: off

@@ -4,6 +4,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 from polycnc.controllers.apci.board._board import Board
 from polycnc.controllers.apci.board._commanded import BoardAxis
 from polycnc.controllers.apci.core._registers import bit_of, with_output
@@ -21,21 +23,13 @@ from polycnc.controllers.apci.library._call import (
 )
 from polycnc.controllers.apci.library._session import Exchange, Session
 from polycnc.controllers.apci.library._table import Rule, read_record, record_pair
+from polycnc.controllers.library import named
 
-
-def _outputs(axis: BoardAxis) -> int:
-    return axis.board.outputs
-
-
-def _set_outputs(axis: BoardAxis, value: int) -> None:
-    axis.board.outputs = value
-
-
-_OUTPUTS = Rule(put=_set_outputs, polled=True, note="Outputs belong to the board, whatever the axis.")
+_OUTPUTS = Rule(polled=True, note="Outputs belong to the board, whatever the axis.")
 
 # fmt: off
 rddigi         = read_record("digi", "digi",   "the digital inputs and the signals of the encoder", "", 52, Rule(polled=True))
-rddigo, wrdigo = record_pair("digo", _outputs, "the digital outputs",                               "", 54, 138, _OUTPUTS)
+rddigo, wrdigo = record_pair("digo", "digo",   "the digital outputs",                               "", 54, 138, _OUTPUTS)
 # fmt: on
 
 
@@ -94,40 +88,26 @@ def rifs(tsrp: Exchange) -> None:
 # ---------------------------------------------------------------------- lights and interrupt
 
 
-@board_call
-def rdledgn(board: Board) -> INT:
-    """Return whether the green light is on, 1 or 0 (Manual 002, 4.4.79)."""
-    return int(board.variables.ledgn != 0)
+def _light(name: str, colour: str, read: int, write: int) -> tuple[Callable[[], int], Callable[[int], None]]:
+    """Make the function that reads a light, and the one that switches it."""
+
+    def is_on(board: Board) -> int:
+        return int(getattr(board.variables, name) != 0)
+
+    def switch(board: Board, value: int) -> None:
+        setattr(board.variables, name, int(value != 0))
+
+    reads = f"Return whether the {colour} light is on, 1 or 0 (Manual 002, 4.4.{read})."
+    writes = f"Switch the {colour} light on, or off with 0 (Manual 002, 4.4.{write})."
+    return (
+        board_call(named(is_on, f"rd{name}", reads, {"board": Board}, INT)),
+        board_call(named(switch, f"wr{name}", writes, {"board": Board, "value": INT})),
+    )
 
 
-@board_call
-def rdledyl(board: Board) -> INT:
-    """Return whether the yellow light is on, 1 or 0 (Manual 002, 4.4.81)."""
-    return int(board.variables.ledyl != 0)
-
-
-@board_call
-def rdledrd(board: Board) -> INT:
-    """Return whether the red light is on, 1 or 0 (Manual 002, 4.4.80)."""
-    return int(board.variables.ledrd != 0)
-
-
-@board_call
-def wrledgn(board: Board, value: INT) -> None:
-    """Switch the green light on, or off with 0 (Manual 002, 4.4.155)."""
-    board.variables.ledgn = int(value != 0)
-
-
-@board_call
-def wrledyl(board: Board, value: INT) -> None:
-    """Switch the yellow light on, or off with 0 (Manual 002, 4.4.157)."""
-    board.variables.ledyl = int(value != 0)
-
-
-@board_call
-def wrledrd(board: Board, value: INT) -> None:
-    """Switch the red light on, or off with 0 (Manual 002, 4.4.156)."""
-    board.variables.ledrd = int(value != 0)
+rdledgn, wrledgn = _light("ledgn", "green", 79, 155)
+rdledyl, wrledyl = _light("ledyl", "yellow", 81, 157)
+rdledrd, wrledrd = _light("ledrd", "red", 80, 156)
 
 
 @polled_call

@@ -6,7 +6,7 @@ import numpy as np
 import numpy.typing as npt
 
 from polycnc.controllers.apci.board import _axis_commands as commands
-from polycnc.controllers.apci.board._commanded import BoardAxis, CommandedBoard
+from polycnc.controllers.apci.board._commanded import BoardAxis
 from polycnc.controllers.apci.board._records import LATCH_INFOS
 from polycnc.controllers.apci.library._call import INT, LIBRARY, axes_call, axis_call, session_call
 from polycnc.controllers.apci.library._session import Selection, Session
@@ -23,7 +23,7 @@ def lps(an: BoardAxis, mst: INT) -> None:
 def lpr(session: Session, latch_infos: LATCH_INFOS) -> None:
     """Start recording axis `latch_infos.san`; `recording` returns what was recorded (Manual 002, 4.4.25)."""
     axis = session.axis(latch_infos.san)
-    _record(axis.board, (axis.index,))
+    commands.lprs(axis.board, (axis.index,))
 
 
 @axes_call
@@ -32,14 +32,7 @@ def lprs(asel: Selection, latch_infos: LATCH_INFOS) -> None:
 
     Ruling: every scan is recorded, until the board's memory for it is full; a new call begins anew.
     """
-    _record(asel.board, asel.axes)
-
-
-def _record(board: CommandedBoard, axes: tuple[int, ...]) -> None:
-    row = board.state.board[0]
-    row["record_axes"] = sum(1 << axis for axis in set(axes))
-    row["record_every"] = 1
-    row["record_count"] = row["recorded"] = 0
+    asel.order(commands.lprs)
 
 
 def recording(an: int) -> npt.NDArray[np.float64]:

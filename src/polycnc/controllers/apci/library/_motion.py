@@ -12,71 +12,45 @@ from polycnc.controllers.apci.board import _jog_commands as jogs
 from polycnc.controllers.apci.board._move_commands import MOVES, Kind, Speeds, go, queue
 from polycnc.controllers.apci.board._path_units import trajectory_units
 from polycnc.controllers.apci.board._records import AS, CMP, HMP, HMP3D, LMP, TSRP
-from polycnc.controllers.apci.library._call import LONG, Records, SelectedRecords, axes_call
+from polycnc.controllers.apci.library._call import LONG, Records, SelectedRecords, axes_call, axes_order
 from polycnc.controllers.apci.library._session import UNKNOWN_ERROR, Selection
 from polycnc.controllers.library import Refused, named
 from polycnc.errors import UsageError
 
+Jog: TypeAlias = Callable[[AS, Records], None]
+
 # ---------------------------------------------------------------------- single axes
 
 
-@axes_call
-def ja(asel: Selection, tsrp: SelectedRecords) -> None:
-    """Jog the selected axes to `tsrp[axis].tp`, each by itself (Manual 002, 4.4.19).
+def _jog(command: Callable[..., None], what: str, section: int, note: str = "") -> Jog:
+    """Make the function of a jog: each of the selected axes by itself, with the number in its record."""
 
-    `tsrp` is the whole sequence of records, indexed by axis number; accelerations and velocities are those that
-    wrjac, wrjvl and wrjtvl wrote.
+    def order(asel: Selection, tsrp: Records) -> None:
+        if isinstance(tsrp, TSRP) or max(asel.axes) >= len(tsrp):
+            raise UsageError(
+                "there is no TSRP record for every selected axis", hint="pass all records: tsrp_array()"
+            )
+        asel.order(command, [tsrp[axis].tp for axis in asel.axes])
 
-    Raises:
-        UsageError: `tsrp` has no record for a selected axis.
-    """
-    asel.order(jogs.ja, _targets(asel, tsrp))
-
-
-@axes_call
-def jr(asel: Selection, tsrp: SelectedRecords) -> None:
-    """Jog the selected axes by `tsrp[axis].tp`, each by itself (Manual 002, 4.4.23).
-
-    Raises:
-        UsageError: `tsrp` has no record for a selected axis.
-    """
-    asel.order(jogs.jr, _targets(asel, tsrp))
+    text = f"{what} (Manual 002, 4.4.{section}).\n\n{note}{_NO_RECORD}"
+    arguments = {"asel": Selection, "tsrp": SelectedRecords}
+    return axes_call(named(order, command.__name__, text, arguments))
 
 
-@axes_call
-def jhi(asel: Selection, tsrp: SelectedRecords) -> None:
-    """Search the encoder's index over the distance `tsrp[axis].tp` (Manual 002, 4.4.20).
+_NO_RECORD = "Raises:\n    UsageError: `tsrp` has no record for a selected axis."
+_RECORDS_OF_ALL = (
+    "`tsrp` is the whole sequence of records, indexed by axis number; accelerations and velocities are those that\n"
+    "wrjac, wrjvl and wrjtvl wrote.\n\n"
+)
 
-    Raises:
-        UsageError: `tsrp` has no record for a selected axis.
-    """
-    asel.order(jogs.jhi, _targets(asel, tsrp))
-
-
-def _targets(asel: Selection, tsrp: Records) -> list[float]:
-    if isinstance(tsrp, TSRP) or max(asel.axes) >= len(tsrp):
-        raise UsageError(
-            "there is no TSRP record for every selected axis", hint="pass all records: tsrp_array()"
-        )
-    return [tsrp[axis].tp for axis in asel.axes]
-
-
-@axes_call
-def jhl(asel: Selection) -> None:
-    """Search the reference switches to the left (Manual 002, 4.4.21)."""
-    asel.order(jogs.jhl)
-
-
-@axes_call
-def jhr(asel: Selection) -> None:
-    """Search the reference switches to the right (Manual 002, 4.4.22)."""
-    asel.order(jogs.jhr)
-
-
-@axes_call
-def js(asel: Selection) -> None:
-    """Stop each selected axis by itself with its stop deceleration; queues are rejected (Manual 002, 4.4.24)."""
-    asel.order(jogs.js)
+# fmt: off
+ja  = _jog(jogs.ja,  "Jog the selected axes to `tsrp[axis].tp`, each by itself", 19, _RECORDS_OF_ALL)
+jr  = _jog(jogs.jr,  "Jog the selected axes by `tsrp[axis].tp`, each by itself", 23)
+jhi = _jog(jogs.jhi, "Search the encoder's index over the distance `tsrp[axis].tp`", 20)
+jhl = axes_order(jogs.jhl, "Search the reference switches to the left", 21)
+jhr = axes_order(jogs.jhr, "Search the reference switches to the right", 22)
+js  = axes_order(jogs.js,  "Stop each selected axis by itself with its stop deceleration; queues are rejected", 24)
+# fmt: on
 
 
 @axes_call

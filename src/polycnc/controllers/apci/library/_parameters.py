@@ -9,13 +9,11 @@ from typing import Annotated
 
 import numpy as np
 
-from polycnc.controllers.apci.board._axis_commands import write_dp, write_mcp, write_rp
 from polycnc.controllers.apci.board._board import Board
 from polycnc.controllers.apci.board._codes import Success
 from polycnc.controllers.apci.board._commanded import BoardAxis
 from polycnc.controllers.apci.board._numbers import is_number
 from polycnc.controllers.apci.board._records import CTRLPARAMS, STRUCTURES, TRU
-from polycnc.controllers.apci.board._spool_commands import free_bytes, moves_queued
 from polycnc.controllers.apci.board._units import PositionUnit, TimeUnit
 from polycnc.controllers.apci.core._registers import ErrorReg
 from polycnc.controllers.apci.library._call import (
@@ -26,7 +24,6 @@ from polycnc.controllers.apci.library._call import (
     LONG,
     board_call,
     filled_call,
-    longint,
     record_call,
 )
 from polycnc.controllers.apci.library._session import UNKNOWN_ERROR, Exchange, Session
@@ -58,56 +55,8 @@ _RECORD_ELEMENTS = {each.name for each in STRUCTURES["TSRP"].fields} - {"an", "s
 _FILTER = ("kp", "ki", "kd", "kpl", "kfca", "kfcv")
 
 
-def _put_rp(axis: BoardAxis, value: float) -> None:
-    write_rp(axis.board, axis.index, value)
-
-
-def _put_dp(axis: BoardAxis, value: float) -> None:
-    write_dp(axis.board, axis.index, value)
-
-
-def _put_mcp(axis: BoardAxis, value: int) -> None:
-    write_mcp(axis.board, axis.index, value)
-
-
-def _put_modereg(board: Board, value: int) -> None:
-    board.modereg = value
-
-
-def _put_nfrax(board: Board, value: int) -> None:
-    board.nfrax = value
-
-
 def _displayed(name: str) -> Callable[[BoardAxis], float]:
     return lambda axis: axis.displayed(getattr(axis, name))
-
-
-def _free_bytes(axis: BoardAxis) -> int:
-    return free_bytes(axis.board, axis.index)
-
-
-def _moves_queued(axis: BoardAxis) -> int:
-    return moves_queued(axis.board, axis.index)
-
-
-def _pcap_index(axis: BoardAxis) -> int:
-    return int(axis.row["pcap_index"])
-
-
-def _offset(axis: BoardAxis) -> float:
-    return float(axis.row["offset"])
-
-
-def _modereg(board: Board) -> int:
-    return longint(board.modereg)
-
-
-def _nfrax(board: Board) -> int:
-    return longint(board.nfrax)
-
-
-def _errorreg(board: Board) -> int:
-    return int(board.errorreg)
 
 
 _PORT = (
@@ -128,15 +77,14 @@ LIMIT, TIME = Rule(fits=not_negative, note="0: not checked."), Rule(fits=not_neg
 AT_ONCE, JERK = Rule(note="0: at once."), Rule(note="0 to 1; other values are limited to it.")
 TROVR = Rule(fits=positive, note="utrovr puts it in force.")
 JTV, JOVR = Rule(field="jtv"), Rule(fits=positive, polled=True, note=_OVERRIDE)
-RP, DP = Rule(put=_put_rp, polled=True, note=_OPEN_ONLY), Rule(put=_put_dp, polled=True, note=_CLOSED_ONLY)
+RP, DP = Rule(polled=True, note=_OPEN_ONLY), Rule(polled=True, note=_CLOSED_ONLY)
 LP, INDEX = Rule(polled=True, note="Reading it clears the status bit lpsf."), Rule(polled=True, field="lp")
-MCP = Rule(put=_put_mcp, polled=True, note=_PORT)
+MCP = Rule(polled=True, note=_PORT)
 SHOWN_RP, SHOWN_DP, SHOWN_TP = (Rule(polled=True, field=name) for name in ("rp", "dp", "tp"))
 SLSP = Rule(number=LONG, done=Success.DONE, refused=Success.FAILED)
 PCAP = Rule(
     polled=True, kind=INT, out="PcapIndex", note="-1 until a command with an index has been executed."
 )
-MODE, NFRAX = Rule(kind=LONG, put=_put_modereg), Rule(kind=LONG, put=_put_nfrax)
 ERROR = Rule(kind=LONG, polled=True, out="ErrorReg")
 
 # fmt: off
@@ -167,11 +115,11 @@ rdrpd = read_record("rpd", _displayed("rp"), "the actual position",             
 rddpd = read_record("dpd", _displayed("dp"), "the setpoint",                                   DISPLAY,   58, SHOWN_DP)
 rdtpd = read_record("tpd", _displayed("tp"), "the absolute target of the last travel command", DISPLAY,  104, SHOWN_TP)
 rddv  = read_record("dv",  "dv",             "the velocity of the profile",                    VELOCITY,  59, LIVE)
-rdlsm = read_record("lsm", _free_bytes,      "the free spooler memory",                        "byte",    84, LIVE)
+rdlsm = read_record("lsm", "lsm",            "the free spooler memory",                        "byte",    84, LIVE)
 rdrv     = read_axis("rv",     "rv",             "the actual velocity",                        VELOCITY,  97, LIVE_AT)
-rdPosErr = read_axis("PosErr", "position_error", "the position error",                         POSITION,  93, LIVE)
-rdMCiS   = read_axis("MCiS",   _moves_queued,    "the number of motion commands in the spooler", "",      87, LIVE_LONG)
-rdPcapIndex = read_axis_coded("PcapIndex", _pcap_index, "the index of the spooled command that is being executed", "", 94, PCAP)
+rdPosErr = read_axis("PosErr", "PosErr",         "the position error",                         POSITION,  93, LIVE)
+rdMCiS   = read_axis("MCiS",   "MCiS",           "the number of motion commands in the spooler", "",      87, LIVE_LONG)
+rdPcapIndex = read_axis_coded("PcapIndex", "PcapIndex", "the index of the spooled command that is being executed", "", 94, PCAP)
 
 # ---------------------------------------------------------------------- parameters of an axis, by its number
 rdEffRadius, wrEffRadius = axis_pair("EffRadius", "effradius", "the effective radius",      "PU",              61, 143, LEAST_0)
@@ -186,13 +134,13 @@ wrslsp =      write_axis("slsp", "slsp", "the slits or steps of a motor turn", "
 rddpoffset, wrdpoffset = axis_pair_coded("dpoffset", "dpoffset", "the offset added to the setpoint",           POSITION, 57, 141)
 rddvoffset, wrdvoffset = axis_pair_coded("dvoffset", "dvoffset", "the velocity at which dpoffset changes",     VELOCITY, 60, 142, AT_ONCE)
 rdgfaux,    wrgfaux    = axis_pair_coded("gfaux",    "gfaux",    "the ratio of motor steps to encoder counts", "",       67, 146)
-rdZeroOffset           = read_axis_coded("ZeroOffset", _offset,  "the zero offset in force",                   POSITION, 110)
+rdZeroOffset           = read_axis_coded("ZeroOffset", "ZeroOffset", "the zero offset in force",                   POSITION, 110)
 
 # ---------------------------------------------------------------------- the board
-rdModeReg, wrModeReg = board_pair("ModeReg",  _modereg,    "the mode register",                                     "", 90, 164, MODE)
-rdnfrax,   wrnfrax   = board_pair("nfrax",    _nfrax,      "the axes that do not count for the path, bit by bit",   "", 92, 166, NFRAX)
+rdModeReg, wrModeReg = board_pair("ModeReg",  "modereg",   "the mode register",                                     "", 90, 164, FLAGS)
+rdnfrax,   wrnfrax   = board_pair("nfrax",    "nfrax",     "the axes that do not count for the path, bit by bit",   "", 92, 166, FLAGS)
 rdtrovr,   wrtrovr   = board_pair("trovr",    "trovr",     "the trajectory override as it is programmed",           "", 106, 174, TROVR)
-rdErrorReg           = read_board("ErrorReg", _errorreg,   "the error register",                                    "", 63, ERROR)
+rdErrorReg           = read_board("ErrorReg", "errorreg",  "the error register",                                    "", 63, ERROR)
 rdtrovrst, wrtrovrst = board_pair_coded("trovrst", "trovrst", "the time in which the trajectory override changes by 1", "s", 107, 175, TIME)
 rdtrac,    wrtrac    = board_pair_coded("trac",  "variables.trac",  "TRAC, the trajectory acceleration of SAP programs",    PATH_ACCELERATION, 105, 173, LEAST_0)
 rdtrvl,    wrtrvl    = board_pair_coded("trvl",  "variables.trvl",  "TRVL, the trajectory velocity of SAP programs",        PATH_VELOCITY,     108, 176, LEAST_0)

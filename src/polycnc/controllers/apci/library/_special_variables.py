@@ -3,14 +3,15 @@
 The manual names the functions without their arguments: an index comes first, after the axis where there is one.
 """
 
-# ruff: noqa: N802  the names are the manual's
+# ruff: noqa: N816  the names are the manual's
 
 from __future__ import annotations
 
-from typing import Any
+from collections.abc import Callable
+from typing import Any, TypeAlias
 
-from polycnc.controllers.apci.board._axis import Axis
 from polycnc.controllers.apci.board._board import Board
+from polycnc.controllers.apci.board._commanded import BoardAxis
 from polycnc.controllers.apci.library._call import (
     DOUBLE,
     INT,
@@ -19,64 +20,39 @@ from polycnc.controllers.apci.library._call import (
     polled_axis_call,
     polled_call,
 )
+from polycnc.controllers.library import named
+
+Pair: TypeAlias = tuple[Callable[..., Any], Callable[..., None]]
 
 
-@polled_call
-def rdSysVarInt(board: Board, ndx: INT) -> INT:
-    """Return an integer system variable; 0 where there is none (Manual 002, 2.5.1)."""
-    return int(_read(board.sysvarint, ndx))
+def _pair(name: str, field: str, kind: Any, noun: str, of_axis: bool) -> Pair:
+    """Make the function that reads a field of variables of the board or of an axis, and the one that writes it."""
+    number = float if kind is DOUBLE else int
+
+    def read(owner: Any, ndx: int) -> float:
+        variables = getattr(owner, field)
+        return number(variables[ndx] if 0 <= ndx < len(variables) else 0)
+
+    def write(owner: Any, ndx: int, value: float) -> None:
+        variables = getattr(owner, field)
+        if 0 <= ndx < len(variables):
+            variables[ndx] = value
+
+    first = {"an": BoardAxis} if of_axis else {"board": Board}
+    reads, writes = (polled_axis_call, axis_call) if of_axis else (polled_call, board_call)
+    source = f"(Manual 002, 2.5.{2 if of_axis else 1})."
+    what = f"{noun} variable of an axis" if of_axis else f"{noun} system variable"
+    text = f"Return {what}; {number()} where there is none {source}"
+    return (
+        reads(named(read, f"rd{name}", text, {**first, "ndx": INT}, kind)),
+        writes(named(write, f"wr{name}", f"Write {what} {source}", {**first, "ndx": INT, "value": kind})),
+    )
 
 
-@polled_call
-def rdSysVarDbl(board: Board, ndx: INT) -> DOUBLE:
-    """Return a floating-point system variable; 0.0 where there is none (Manual 002, 2.5.1)."""
-    return float(_read(board.sysvardbl, ndx))
-
-
-@board_call
-def wrSysVarInt(board: Board, ndx: INT, value: INT) -> None:
-    """Write an integer system variable (Manual 002, 2.5.1)."""
-    _write(board.sysvarint, ndx, value)
-
-
-@board_call
-def wrSysVarDbl(board: Board, ndx: INT, value: DOUBLE) -> None:
-    """Write a floating-point system variable (Manual 002, 2.5.1)."""
-    _write(board.sysvardbl, ndx, value)
-
-
-@polled_axis_call
-def rdAxVarInt(an: Axis, ndx: INT) -> INT:
-    """Return an integer variable of an axis; 0 where there is none (Manual 002, 2.5.2)."""
-    return int(_read(an.varint, ndx))
-
-
-@polled_axis_call
-def rdAxVarDbl(an: Axis, ndx: INT) -> DOUBLE:
-    """Return a floating-point variable of an axis; 0.0 where there is none (Manual 002, 2.5.2)."""
-    return float(_read(an.vardbl, ndx))
-
-
-@axis_call
-def wrAxVarInt(an: Axis, ndx: INT, value: INT) -> None:
-    """Write an integer variable of an axis (Manual 002, 2.5.2)."""
-    _write(an.varint, ndx, value)
-
-
-@axis_call
-def wrAxVarDbl(an: Axis, ndx: INT, value: DOUBLE) -> None:
-    """Write a floating-point variable of an axis (Manual 002, 2.5.2)."""
-    _write(an.vardbl, ndx, value)
-
-
-def _read(variables: Any, ndx: int) -> Any:
-    return variables[ndx] if 0 <= ndx < len(variables) else 0
-
-
-def _write(variables: Any, ndx: int, value: float) -> None:
-    if 0 <= ndx < len(variables):
-        variables[ndx] = value
-
+rdSysVarInt, wrSysVarInt = _pair("SysVarInt", "sysvarint", INT, "an integer", of_axis=False)
+rdSysVarDbl, wrSysVarDbl = _pair("SysVarDbl", "sysvardbl", DOUBLE, "a floating-point", of_axis=False)
+rdAxVarInt, wrAxVarInt = _pair("AxVarInt", "varint", INT, "an integer", of_axis=True)
+rdAxVarDbl, wrAxVarDbl = _pair("AxVarDbl", "vardbl", DOUBLE, "a floating-point", of_axis=True)
 
 # fmt: off
 __all__ = [

@@ -3,7 +3,7 @@
 Commands with PcapIndex show it in rdPcapIndex while they are executed.
 """
 
-# ruff: noqa: N803  the names are the manual's
+# ruff: noqa: E501, N803  the names are the manual's
 
 from __future__ import annotations
 
@@ -18,29 +18,18 @@ from polycnc.controllers.apci.library._call import (
     LONG,
     PointCount,
     axes_call,
+    axes_order,
     axis_call,
     board_call,
 )
 from polycnc.controllers.apci.library._session import UNKNOWN_ERROR, Selection
 from polycnc.controllers.library import Refused
 
-
-@axes_call
-def ssms(asel: Selection) -> None:
-    """Start the spoolers of the selected axes together; ends a wait for time or inputs (Manual 002, 4.4.120)."""
-    asel.order(spooler.ssms)
-
-
-@axes_call
-def sstps(asel: Selection) -> None:
-    """Pause the spoolers after what they carry out now; ssms goes on (Manual 002, 4.4.121)."""
-    asel.order(spooler.sstps)
-
-
-@axes_call
-def sdels(asel: Selection) -> None:
-    """Reject what the selected axes have queued; what is carried out now is finished (Manual 002, 4.4.115)."""
-    asel.order(spooler.sdels)
+# fmt: off
+ssms  = axes_order(spooler.ssms,  "Start the spoolers of the selected axes together; ends a wait for time or inputs",        120)
+sstps = axes_order(spooler.sstps, "Pause the spoolers after what they carry out now; ssms goes on",                          121)
+sdels = axes_order(spooler.sdels, "Reject what the selected axes have queued; what is carried out now is finished",          115)
+# fmt: on
 
 
 @axes_call

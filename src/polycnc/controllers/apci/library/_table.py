@@ -26,6 +26,7 @@ from polycnc.controllers.apci.library._call import (
     LONG_AT,
     board_call,
     filled_call,
+    longint,
     polled_call,
     record_call,
 )
@@ -96,8 +97,9 @@ def _text(verb: str, what: str, unit: str, rest: str, section: int, rule: Rule) 
     return f"{verb} {what}{unit}{rest} (Manual 002, 4.4.{section}).{note}"
 
 
-def _getter(get: Get) -> Callable[[Any], Any]:
-    return attrgetter(get) if isinstance(get, str) else get
+def _getter(get: Get, rule: Rule) -> Callable[[Any], Any]:
+    value_of = attrgetter(get) if isinstance(get, str) else get
+    return value_of if rule.kind is not LONG else lambda register: longint(value_of(register))
 
 
 def _storer(get: Get, rule: Rule) -> Put:
@@ -135,7 +137,7 @@ def _axis_call(rule: Rule, number: Any) -> Callable[..., Any]:
 
 def read_record(stem: str, get: Get, what: str, unit: str, section: int, rule: Rule = PLAIN) -> OnRecord:
     """Make the function that reads into an element of a record."""
-    element, value_of = rule.field or stem, _getter(get)
+    element, value_of = rule.field or stem, _getter(get, rule)
 
     def read(tsrp: Exchange) -> None:
         setattr(tsrp.record, element, value_of(tsrp.axis))
@@ -164,7 +166,7 @@ def record_pair(
 
 def read_axis(stem: str, get: Get, what: str, unit: str, section: int, rule: Rule = PLAIN) -> OfAxis:
     """Make the function that returns a register of an axis."""
-    value_of = _getter(get)
+    value_of = _getter(get, rule)
 
     def read(an: BoardAxis) -> Any:
         return value_of(an)
@@ -197,7 +199,7 @@ def read_axis_coded(
     stem: str, get: Get, what: str, unit: str, section: int, rule: Rule = PLAIN
 ) -> OfAxisCoded:
     """Make the function that returns a code and a register of an axis."""
-    value_of, done = _getter(get), int(rule.done)
+    value_of, done = _getter(get, rule), int(rule.done)
 
     def read(an: BoardAxis) -> Any:
         return done, value_of(an)
@@ -227,7 +229,7 @@ def axis_pair_coded(
 
 def read_board(stem: str, get: Get, what: str, unit: str, section: int, rule: Rule = PLAIN) -> OfBoard:
     """Make the function that returns a register of the board."""
-    value_of = _getter(get)
+    value_of = _getter(get, rule)
 
     def read(board: Board) -> Any:
         return value_of(board)
@@ -255,7 +257,7 @@ def board_pair_coded(
     stem: str, get: Get, what: str, unit: str, read: int, write: int, rule: Rule = PLAIN
 ) -> tuple[OfBoardCoded, ToBoardCoded]:
     """Make both functions of the board that return a code."""
-    value_of, store = _getter(get), _storer(get, rule)
+    value_of, store = _getter(get, rule), _storer(get, rule)
 
     def fetch(board: Board) -> tuple[int, float]:
         return int(Status.DONE), value_of(board)

@@ -14,11 +14,11 @@ import numpy as np
 import numpy.typing as npt
 
 from polycnc.controllers.apci.board._board import Board
-from polycnc.controllers.apci.board._board_variables import CNC_TASKS, COMMON_BUFFER_BYTES
 from polycnc.controllers.apci.board._codes import BufferError
 from polycnc.controllers.apci.board._declared import CBCNCT, CDBUF, CIBUF, COMMON_VARIABLES
 from polycnc.controllers.apci.board._numbers import is_number
 from polycnc.controllers.apci.board._records import TASK_STRING_BYTES
+from polycnc.controllers.apci.core._turn_state import BUFFER_BYTES, TASKS
 from polycnc.controllers.apci.library._call import (
     CODE,
     INT,
@@ -34,7 +34,6 @@ from polycnc.controllers.apci.library._call import (
     session_call,
 )
 from polycnc.controllers.apci.library._session import UNKNOWN_ERROR, Session
-from polycnc.controllers.apci.sap import Tasks
 from polycnc.controllers.apci.sap._board_host import BoardTasks
 from polycnc.controllers.library import Refused
 
@@ -42,10 +41,10 @@ _STATUS = ("errnum", "errline", "stackfree", "running", "csrcline")
 _BULK = {100: 100, COMMON_VARIABLES: COMMON_VARIABLES}  # index: variables from 0
 
 
-def _tasks(board: Board) -> Tasks:
+def _tasks(board: Board) -> BoardTasks:
     if not isinstance(board.tasks, BoardTasks):
         raise Refused(UNKNOWN_ERROR)
-    return board.tasks.tasks
+    return board.tasks
 
 
 # ---------------------------------------------------------------------- control
@@ -158,8 +157,8 @@ def _buffer(session: Session, cbcnct: CBCNCT, *, polled: bool = False) -> bytear
     Raises:
         Refused: With all error bits: a board that is not reached has no memory.
     """
-    error = 0 if 0 <= cbcnct.task_number < CNC_TASKS else int(BufferError.task_number)
-    if not 0 <= cbcnct.size <= COMMON_BUFFER_BYTES:
+    error = 0 if 0 <= cbcnct.task_number < TASKS else int(BufferError.task_number)
+    if not 0 <= cbcnct.size <= BUFFER_BYTES:
         error |= BufferError.size
     try:
         board = session.polled() if polled else session.usable()

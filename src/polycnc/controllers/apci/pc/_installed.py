@@ -7,13 +7,12 @@ from collections.abc import Callable, Mapping
 from polycnc.controllers.apci.board._board import Board
 from polycnc.controllers.apci.board._codes import TransferCode
 from polycnc.controllers.apci.board._environment import InterfaceStatus
-from polycnc.controllers.apci.board._spool_commands import free_bytes
 from polycnc.controllers.apci.board._system_file import SystemFile
 from polycnc.controllers.apci.pc._board_memory import BoardMemory
 
 _IN_RECORD = (
     *("kp", "ki", "kd", "kpl", "kfca", "kfcv", "jac", "jvl", "jovr", "hac", "hvl", "sdec"),
-    *("rp", "dp", "dv", "tp", "sll", "slr", "ipw", "mpe", "gf", "mcp", "aux"),
+    *("rp", "dp", "dv", "tp", "sll", "slr", "ipw", "mpe", "gf", "mcp", "aux", "digo", "ifs", "lsm"),
 )
 
 
@@ -96,13 +95,5 @@ class InstalledBoard:
         """Return the elements of TSRP with their present values."""
         one = self.board.axes[axis]
         values = {name: getattr(one, name) for name in _IN_RECORD}
-        return {
-            **values,
-            "jtv": one.jtvl,
-            "axst": int(one.axst),
-            "digi": int(one.digi),
-            "digo": self.board.outputs,
-            "ifs": int(self.interface.word),
-            "lsm": free_bytes(self.board, axis),
-            "epc": self.eprom_cycles,
-        }
+        others = {"jtv": one.jtvl, "axst": int(one.axst), "digi": int(one.digi), "epc": self.eprom_cycles}
+        return values | others

@@ -4,19 +4,19 @@ Part 1 of the manual prints fragments of rw_SymPas only. Those work as printed; 
 reconstructed plain Pascal, marked so in docs/reference/sap-language.md.
 """
 
+from polycnc.controllers.apci.core._turn_state import BUFFER_BYTES, TASKS
 from polycnc.controllers.apci.sap._cnc_file import CncFileError, read_cnc, write_cnc
 from polycnc.controllers.apci.sap._commands import AXIS_QUALIFIERS, COMMANDS, SYSTEM_VARIABLES
 from polycnc.controllers.apci.sap._compile import check, compile_program
 from polycnc.controllers.apci.sap._faults import FAULTS
-from polycnc.controllers.apci.sap._host import BUFFER_BYTES, Call, Host
+from polycnc.controllers.apci.sap._host import Call, Host
 from polycnc.controllers.apci.sap._lexer import KEYWORDS, NAME, SourceText, tokens
-from polycnc.controllers.apci.sap._program import TASKS, Program
+from polycnc.controllers.apci.sap._program import Program
 from polycnc.controllers.apci.sap._task import WAITING, Task, TaskStatus
-from polycnc.controllers.apci.sap._tasks import BUDGET, Tasks
+from polycnc.controllers.apci.sap._tasks import Tasks
 
 __all__ = [
     "AXIS_QUALIFIERS",
-    "BUDGET",
     "BUFFER_BYTES",
     "COMMANDS",
     "FAULTS",

@@ -21,7 +21,8 @@ from polycnc.controllers.apci.board._move_commands import (
 )
 from polycnc.controllers.apci.board._numbers import is_number
 from polycnc.controllers.apci.core._state import Whole
-from polycnc.controllers.apci.sap import Call, Program, Tasks
+from polycnc.controllers.apci.sap import AXIS_QUALIFIERS, Call, Tasks
+from polycnc.controllers.apci.sap._commands import INTEGER
 from polycnc.controllers.apci.sap._compiled_turns import CompiledTurns
 from polycnc.errors import UsageError
 
@@ -234,35 +235,17 @@ class BoardHost:
         one = self.board.axes[axis]
         if index is not None:
             return float(self.axis_field(axis, name)[_checked(index, 100)])
-        special: Mapping[str, Callable[[], float]] = {
-            "digo": lambda: self.board.outputs,
-            "ifs": lambda: self.board.variables.interface.word,
-            "lsm": lambda: spooler.free_bytes(self.board, axis),
-            "MCiS": lambda: spooler.moves_queued(self.board, axis),
-            "PcapIndex": lambda: float(one.row["pcap_index"]),
-            "PosErr": lambda: one.position_error,
-            "ZeroOffset": lambda: float(one.row["offset"]),
-        }
-        return float(special[name]() if name in special else getattr(one, name))
+        return float(getattr(one, name))
 
     def write_axis(self, axis: int, name: str, index: int | None, value: float) -> None:
         """Set an axis qualifier; to a number that no board can be given only where it is just a variable."""
         if index is None and not is_number(value):
             return
-        board, one = self.board, self.board.axes[axis]
-        writers: Mapping[str, Callable[[], None]] = {
-            "rp": lambda: axis_commands.write_rp(board, axis, value),
-            "dp": lambda: axis_commands.write_dp(board, axis, value),
-            "mcp": lambda: axis_commands.write_mcp(board, axis, int(value)),
-        }
         if index is not None:
             self.axis_field(axis, name)[_checked(index, 100)] = value
-        elif name == "digo":
-            board.outputs = int(value)
-        elif name in writers:
-            writers[name]()
         else:
-            setattr(one, name, int(value) if name in ("GCR", "ControllerFlags") else value)
+            is_whole = AXIS_QUALIFIERS[name.lower()].kind == INTEGER
+            setattr(self.board.axes[axis], name, int(value) if is_whole else value)
 
     def common_buffer(self, task: int) -> bytearray:
         """Return the common buffer of a task."""
@@ -280,32 +263,16 @@ def _checked(index: int | None, count: int = 1000) -> int:
     return index
 
 
-class BoardTasks:
+class BoardTasks(Tasks):
     """The four tasks of a board, in its time."""
 
     def __init__(self, board: Board) -> None:
         host = BoardHost(board)
-        self.tasks = Tasks(host)
+        super().__init__(host)
         budget = board.config.rulings.instructions_per_scan
-        self._turns = CompiledTurns(self.tasks.each, host, (board.state, board.kernel), budget)
+        self._turns = CompiledTurns(self.each, host, (board.state, board.kernel), budget)
         board.tasks = self
-
-    def load(self, program: Program) -> None:
-        """Load a compiled program into the task that it names."""
-        self.tasks.load(program)
 
     def turns(self) -> Whole:
         """Give the tasks their turns in this scan; return the call that gives them those of the scans that follow."""
         return self._turns.give()
-
-    def halt(self) -> None:
-        """Halt all tasks."""
-        self.tasks.halt_all()
-
-    def save(self) -> list[dict[str, Any]]:
-        """Return the state of all tasks, with their programs, as plain data."""
-        return self.tasks.save()
-
-    def read_saved(self, data: Any) -> Callable[[], None]:
-        """Read what `save` has returned; return what puts it back."""
-        return self.tasks.read_saved(data)

@@ -6,11 +6,12 @@ import struct
 from collections.abc import Callable
 from typing import Any
 
+from polycnc.controllers.apci.core._turn_state import BUFFER_BYTES
 from polycnc.controllers.apci.sap import _commands
 from polycnc.controllers.apci.sap._arithmetic import wrap
 from polycnc.controllers.apci.sap._commands import DOUBLE
 from polycnc.controllers.apci.sap._faults import BUFFER_RANGE, INDEX_RANGE, UNKNOWN_AXIS, Fault
-from polycnc.controllers.apci.sap._host import BUFFER_BYTES, Call
+from polycnc.controllers.apci.sap._host import Call
 from polycnc.controllers.apci.sap._machine import Build, Machine, Pause, Step
 
 

@@ -15,8 +15,9 @@ import re
 import zlib
 from typing import Any
 
+from polycnc.controllers.apci.core._turn_state import TASKS
 from polycnc.controllers.apci.sap._linker import OPERATIONS
-from polycnc.controllers.apci.sap._program import TASKS, Entry, Program
+from polycnc.controllers.apci.sap._program import Entry, Program
 from polycnc.errors import ConfigurationError
 
 MAX_BYTES = 1 << 20

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
+from polycnc.controllers.apci.core._turn_state import TASKS
 from polycnc.controllers.apci.sap import _commands
 from polycnc.controllers.apci.sap._arithmetic import FUNCTIONS
 from polycnc.controllers.apci.sap._commands import BOOLEAN, INTEGER
@@ -16,7 +17,7 @@ from polycnc.controllers.apci.sap._names import (
     VariableSymbol,
 )
 from polycnc.controllers.apci.sap._parser import parse
-from polycnc.controllers.apci.sap._program import TASKS, Entry, Program
+from polycnc.controllers.apci.sap._program import Entry, Program
 from polycnc.controllers.apci.sap._statements import StatementCompiler
 from polycnc.controllers.apci.sap._syntax import Constant, Place, Routine, Source, Variable
 from polycnc.errors import ProgramError, UsageError

@@ -5,8 +5,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Protocol
 
-BUFFER_BYTES = 1000
-
 
 @dataclass(frozen=True, slots=True)
 class Call:

@@ -14,9 +14,7 @@ from polycnc.controllers.apci.sap._syntax import Block, Constant, Expression, Ro
 from polycnc.errors import ProgramError
 
 _TYPES = {"integer": "i", "longint": "i", "double": "d", "real": "d", "boolean": "b"}
-_BEHIND_STATEMENT = frozenset({";", "end", "until", "else", "otherwise"})
 _SECTIONS = frozenset({"const", "var", "procedure", "function", "event", "begin"})
-_STARTS = frozenset({"begin", "if", "while", "repeat", "for", "case"})
 
 
 def parse(source: SourceText, found: list[Token], errors: list[ProgramError]) -> Source:

@@ -5,7 +5,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any, TypeAlias
 
-TASKS = 4
 Cells: TypeAlias = tuple[tuple[str, int], ...]
 """Kinds of memory cells with how many of each follow one another."""
 

@@ -22,9 +22,7 @@ from polycnc.controllers.apci.sap._syntax import (
 )
 from polycnc.errors import ProgramError
 
-_TYPES = {"integer": "i", "longint": "i", "double": "d", "real": "d", "boolean": "b"}
 _BEHIND_STATEMENT = frozenset({";", "end", "until", "else", "otherwise"})
-_SECTIONS = frozenset({"const", "var", "procedure", "function", "event", "begin"})
 _STARTS = frozenset({"begin", "if", "while", "repeat", "for", "case"})
 
 

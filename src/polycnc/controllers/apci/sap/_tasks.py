@@ -5,16 +5,11 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
+from polycnc.controllers.apci.core._turn_state import TASKS
 from polycnc.controllers.apci.sap._faults import TASK_NUMBER, Fault
-from polycnc.controllers.apci.sap._host import BUFFER_BYTES, Host
-from polycnc.controllers.apci.sap._program import TASKS, Program
+from polycnc.controllers.apci.sap._host import Host
+from polycnc.controllers.apci.sap._program import Program
 from polycnc.controllers.apci.sap._task import STRING_BYTES, Task, TaskStatus
-
-BUDGET = 100
-"""Ruling: instructions that every task runs per scan, in the order of their numbers."""
-
-NO_SUCH_TASK, TOO_MANY_BYTES, BAD_MEMORY = 0x1, 0x2, 0x4
-"""What rdcbcnct and wrcbcnct return, bit by bit."""
 
 _UNKNOWN_ERROR = 1
 
@@ -26,7 +21,6 @@ class Tasks:
     """
 
     def __init__(self, host: Host) -> None:
-        self._host = host
         self.each = tuple(Task(number, host, self._control) for number in range(TASKS))
 
     def load(self, program: Program) -> None:
@@ -51,7 +45,7 @@ class Tasks:
     def stepcnct(self, task: int) -> None:
         """Do nothing: the manual declares single steps as not implemented (Manual 002, 4.4.125)."""
 
-    def halt_all(self) -> None:
+    def halt(self) -> None:
         """Stop all programs, as a system reset does."""
         for task in self.each:
             task.end(stop=True)
@@ -59,10 +53,6 @@ class Tasks:
     def rdcncts(self, task: int) -> TaskStatus:
         """Return the status of a task; zeros for one that does not exist."""
         return self.each[task].status() if 0 <= task < TASKS else TaskStatus(0, 0, 0, 0, 0)
-
-    def error_text(self, task: int) -> str:
-        """Return what the run-time error of a task says, for people; empty without one."""
-        return self.each[task].error
 
     def gettskinfo(self, task: int) -> tuple[int, int]:
         """Return status (0: good) and tskinfo: bit 0 an incomplete, bit 1 a complete string is to be read."""
@@ -92,37 +82,7 @@ class Tasks:
 
         return put
 
-    # Common buffers
-
-    def rdcbcnct(self, task: int, size: int, memory: bytearray) -> int:
-        """Copy the first `size` bytes of a task's common buffer into `memory`; return 0 or error bits."""
-        error = _buffer_error(task, size, memory)
-        if not error:
-            memory[:size] = self._host.common_buffer(task)[:size]
-        return error
-
-    def wrcbcnct(self, task: int, size: int, memory: bytes | bytearray) -> int:
-        """Copy `size` bytes of `memory` to the beginning of a task's common buffer; return 0 or error bits."""
-        error = _buffer_error(task, size, memory)
-        if not error:
-            self._host.common_buffer(task)[:size] = memory[:size]
-        return error
-
-    # Turns
-
-    def run_scan(self, budget: int = BUDGET) -> None:
-        """Give every task its turn; to be called once per scan, with the host's `scan` already counted up."""
-        for task in self.each:
-            task.run(budget)
-
     def _control(self, name: str, number: int) -> None:
         if not 0 <= number < TASKS:
             raise Fault(TASK_NUMBER)
         {"startcnct": self.startcnct, "stopcnct": self.stopcnct, "contcnct": self.contcnct}[name](number)
-
-
-def _buffer_error(task: int, size: int, memory: bytes | bytearray) -> int:
-    error = 0 if 0 <= task < TASKS else NO_SUCH_TASK
-    if not 0 <= size <= BUFFER_BYTES:
-        return error | TOO_MANY_BYTES
-    return error | (BAD_MEMORY if len(memory) < size else 0)
