@@ -251,6 +251,7 @@ def test_parameters_that_are_written_while_a_program_runs_act_with_the_next() ->
     assert control.machine.config.axes[0].soft_limits[1] > 1000
 
 
+@pytest.mark.covers("fanuc.ncparam.1320", "fanuc.ncparam.1321", "fanuc.param.1001_0")
 def test_speeds_and_limits_of_an_inch_machine() -> None:
     control = PowerMate(1, inch_output=True)
     control.parameters.set(1320, 123_456, 1)  # 0.0001 inch
@@ -264,6 +265,7 @@ def test_speeds_and_limits_of_an_inch_machine() -> None:
     ("code", "name"), [(0, "Y"), (ord("X"), "Y"), (7, "Y"), (ord("N"), "Y"), (ord("W"), "W")]
 )
 @pytest.mark.covers("fanuc.cnc_wrparam")
+@pytest.mark.covers("fanuc.ncparam.1020")
 def test_axis_names_come_from_a_parameter_and_are_never_unusable(code: int, name: str) -> None:
     control, handle = attached(axes=2)
     moved(control, "G0 X3. Y-4.")
@@ -371,6 +373,7 @@ def test_two_programs_in_two_threads_have_one_control() -> None:
 
 @pytest.mark.covers("fanuc.cnc_wrmdiprog")
 @pytest.mark.covers("fanuc.cnc_dwnstart", "fanuc.cnc_wrmacro", "fanuc.cnc_wrmdiprog.err.EW_DATA")
+@pytest.mark.covers("fanuc.concept.selected_program")
 def test_power_off_and_on() -> None:
     control, handle = attached(axes=2)
     registered(control, O7="\nG1 X5. F600\nM30\n")

@@ -48,6 +48,12 @@ LISTS = {
 )
 @covers("example.cnc_rdprogdir_format", "cnc_rdprogdir", "concept.truncation")
 @covers("struct.PRGDIR", "PRGDIR.prg_data")
+@pytest.mark.covers(
+    "fanuc.concept.no_nul_termination",
+    "fanuc.LF",
+    "fanuc.concept.comment_rules",
+    "fanuc.concept.memory_accounting",
+)
 def test_example_directory(kind: int) -> None:
     _, handle = _directory()
     text = LISTS[kind]
@@ -67,6 +73,7 @@ def test_example_directory(kind: int) -> None:
 
 @covers("example.cnc_rdprogdir")
 @pytest.mark.covers("fanuc.cnc_rdprogdir")
+@pytest.mark.covers("fanuc.concept.no_nul_termination", "fanuc.format.progdir_type0")
 def test_example_directory_printed_program_by_program() -> None:
     _, handle = _directory()
     code, found = fwlib.cnc_rdprogdir(handle, 0, 200, 9000, 255)
@@ -77,6 +84,13 @@ def test_example_directory_printed_program_by_program() -> None:
 
 @pytest.mark.covers("fanuc.cnc_rdprogdir")
 @covers("concept.comment_rules", "concept.program_number_range")
+@pytest.mark.covers(
+    "fanuc.PERCENT",
+    "fanuc.format.progdir_type0",
+    "fanuc.format.progdir_type1",
+    "fanuc.format.progdir_type2",
+    "fanuc.concept.truncation",
+)
 def test_ranges_and_comments_of_the_directory() -> None:
     control, handle = attached()
     for kind in (0, 1, 2):
@@ -95,6 +109,7 @@ def test_ranges_and_comments_of_the_directory() -> None:
 
 @pytest.mark.covers("fanuc.cnc_rdprogdir")
 @covers("cnc_rdprogdir.err.EW_LENGTH", "cnc_rdprogdir.err.EW_NUMBER", "cnc_rdprogdir.err.EW_ATTRIB")
+@pytest.mark.covers("fanuc.concept.length_argument", "fanuc.concept.program_number_range")
 def test_directory_requests_that_are_refused() -> None:
     _, handle = _directory()
     for length in (0, -1):
@@ -117,6 +132,7 @@ def test_directory_requests_that_are_refused() -> None:
     "fanuc.ODBNC.u.bin.unused_mem",
 )
 @pytest.mark.covers("fanuc.struct.ODBNC")
+@pytest.mark.covers("fanuc.concept.length_argument", "fanuc.PERCENT", "fanuc.concept.memory_accounting")
 def test_program_information() -> None:
     _, handle = _directory()
     code, info = fwlib.cnc_rdproginfo(handle, 0, 12)
@@ -143,6 +159,7 @@ def test_program_information() -> None:
 @covers("example.cnc_rdprgnum", "cnc_rdprgnum", "concept.subprogram_numbers")
 @pytest.mark.covers("fanuc.ODBPRO.data", "fanuc.ODBPRO.mdata")
 @pytest.mark.covers("fanuc.struct.ODBPRO")
+@pytest.mark.covers("fanuc.concept.selected_program")
 def test_example_program_numbers_in_a_subprogram() -> None:
     control, handle = attached()
     registered(
@@ -185,6 +202,7 @@ def test_example_sequence_number_is_kept_by_blocks_without_one() -> None:
 
 
 @covers("cnc_rdexecprog", "cnc_rdexecprog.err.EW_LENGTH")
+@pytest.mark.covers("fanuc.concept.subprogram_numbers", "fanuc.concept.truncation")
 def test_the_program_in_execution() -> None:
     control, handle = attached()
     registered(control, O7="\nN10G1X10.F600\nN20Y5.\nN30X0\nM30\n")
@@ -205,6 +223,7 @@ def test_the_program_in_execution() -> None:
 
 @covers("cnc_wrmdiprog", "example.cnc_wrmdiprog_format", "concept.mdi_program", "mode.MDI")
 @pytest.mark.covers("fanuc.cnc_absolute", "fanuc.cnc_wrmdiprog.err.EW_DATA")
+@pytest.mark.covers("fanuc.concept.program_number_range")
 def test_example_mdi_program() -> None:
     control, handle = attached(axes=1)
     control.select_mode("MDI")
@@ -223,6 +242,7 @@ def test_example_mdi_program() -> None:
     "cnc_wrmdiprog.err.EW_REJECT", "range.mdi_length",
 )  # fmt: skip
 @pytest.mark.covers("fanuc.cnc_wrmdiprog")
+@pytest.mark.covers("fanuc.concept.mode_matrix", "fanuc.concept.mdi_program")
 def test_mdi_programs_that_are_refused() -> None:
     control, handle = attached(axes=1)
 
@@ -260,6 +280,7 @@ def test_mdi_programs_that_are_refused() -> None:
     "fanuc.ODBMDIP.mdiprog", "fanuc.ODBMDIP.mdipntr", "fanuc.ODBMDIP.crntprog", "fanuc.ODBMDIP.crntpntr"
 )
 @pytest.mark.covers("fanuc.struct.ODBMDIP")
+@pytest.mark.covers("fanuc.concept.mdi_program", "fanuc.concept.program_number_range")
 def test_mdi_pointers() -> None:
     control, handle = attached(axes=1)
     registered(control, O77="\nG4P80\nM99\n")
@@ -300,6 +321,7 @@ def test_mdi_pointers() -> None:
     "cnc_wrmdipntr.err.EW_REJECT",
     "EW_MODE", "EW_REJECT",
 )  # fmt: skip
+@pytest.mark.covers("fanuc.concept.mode_matrix", "fanuc.concept.mdi_program")
 def test_mdi_pointers_that_are_refused() -> None:
     control, handle = attached(axes=1)
     assert fwlib.cnc_rdmdipntr(handle)[0] == EW.EW_MODE
@@ -322,6 +344,7 @@ def test_mdi_pointers_that_are_refused() -> None:
 @pytest.mark.covers("fanuc.cnc_rdexecprog", "fanuc.cnc_rdseqnum")
 @covers("cnc_seqsrch", "cnc_rewind")
 @pytest.mark.covers("fanuc.cnc_absolute")
+@pytest.mark.covers("fanuc.concept.seqnum_retention", "fanuc.concept.selected_program")
 def test_a_start_begins_at_the_sequence_number_that_was_sought() -> None:
     control, handle = attached(axes=2)
     registered(control, O7="\nN10 G1 X10. F6000\nN20 Y5.\nN30 X2.5\nM30\n")
@@ -367,6 +390,7 @@ def test_a_start_begins_at_the_sequence_number_that_was_sought() -> None:
     "fanuc.cnc_wrmdiprog",
     "fanuc.cnc_wrmdiprog.err.EW_MODE",
 )
+@pytest.mark.covers("fanuc.concept.selected_program")
 def test_searches_of_the_cursor_that_are_refused() -> None:
     control, handle = attached(axes=1)
     registered(control, O7="\nN10 G1 X10. F600\nN20 X5.\nM30\n")

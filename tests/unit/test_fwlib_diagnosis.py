@@ -86,6 +86,7 @@ def test_a_diagnosis_value_of_each_kind(
 @pytest.mark.covers("fanuc.ODBDGN.type")
 @pytest.mark.covers("fanuc.cnc_diagnoss.err.EW_LENGTH")
 @pytest.mark.covers("fanuc.ODBDGN")
+@pytest.mark.covers("fanuc.common.ALL_AXES2")
 def test_all_axes_at_once() -> None:
     control, library, handle = moving()
     control.advance(8000)
@@ -113,6 +114,7 @@ def test_a_diagnosis_is_refused(number: int, axis: int, code: str) -> None:
 
 
 @pytest.mark.covers("fanuc.cnc_diagnoss", "fanuc.cnc_diagnoss.err.EW_LENGTH")
+@pytest.mark.covers("fanuc.concept.length_argument")
 def test_a_diagnosis_needs_its_length() -> None:
     library, handle = at(PowerMate())  # with three axes
     for number, axis, size in (
@@ -205,6 +207,7 @@ MACRO = {"IS-A": (3, 4), "IS-B": (3, 4), "IS-C": (4, 5)}
         for system, row in AXIS.items()
     ],
 )  # fmt: skip
+@pytest.mark.covers("fanuc.param.1004_0", "fanuc.param.1004_1")
 def test_figures_of_axes(system: str, mm: int, inch: int, degree: int) -> None:
     for inch_input in (False, True):
         for inch_output in (False, True):
@@ -233,6 +236,12 @@ def test_figures_of_axes(system: str, mm: int, inch: int, degree: int) -> None:
     ],
 )  # fmt: skip
 @pytest.mark.covers("fanuc.cnc_getfigure")
+@pytest.mark.covers(
+    "fanuc.concept.decimal_point",
+    "fanuc.param.1004_0",
+    "fanuc.param.1004_1",
+    "fanuc.concept.increment_system",
+)
 def test_figures_of_tool_offsets_and_macro_variables(
     kind: int, digits: int, system: str, mm: int, inch: int
 ) -> None:
@@ -244,6 +253,12 @@ def test_figures_of_tool_offsets_and_macro_variables(
 
 @pytest.mark.covers("fanuc.cnc_getfigure")
 @pytest.mark.covers("fanuc.param.1004_0", "fanuc.param.1004_1", "fanuc.cnc_getfigure.err.EW_ATTRIB")
+@pytest.mark.covers(
+    "fanuc.concept.decimal_point",
+    "fanuc.ncparam.1004_0",
+    "fanuc.ncparam.1004_1",
+    "fanuc.concept.increment_system",
+)
 def test_the_increment_system_is_a_parameter() -> None:
     control = PowerMate()
     library, handle = at(control)
@@ -326,6 +341,7 @@ def test_the_manuals_program_prints_the_message() -> None:
         (0, 262, ("external_message", "external_data_input"), "EW_OK"),
     ],
 )  # fmt: skip
+@pytest.mark.covers("fanuc.common.allmode")
 def test_messages_are_refused(kind: int, length: int, options: Any, code: str) -> None:
     control = PowerMate(options=options)
     control.operator_message(2001, "DOOR")

@@ -110,6 +110,7 @@ def test_histories_are_read_while_sampling_is_stopped() -> None:
 @pytest.mark.covers("fanuc.ODBHIS.rec_mdi", "fanuc.ODBHIS.rec_type", "fanuc.ODBHIS.rec_mdi.dummy")
 @pytest.mark.covers("fanuc.ODBHIS.key_code", "fanuc.ODBHIS.pw_flag")
 @pytest.mark.covers("fanuc.ODBHIS")
+@pytest.mark.covers("fanuc.concept.history_protocol")
 def test_a_key() -> None:
     control, library, handle = fresh()
     control.history.press_key(ord("G"))
@@ -146,6 +147,7 @@ def monitored(library: Any, handle: int, *entries: tuple[int, int, int, int]) ->
     "fanuc.concept.history_record_kinds",
 )
 @pytest.mark.covers("fanuc.IODBSIG", "fanuc.ODBHIS", "fanuc.ODBHIS.rec_type")
+@pytest.mark.covers("fanuc.concept.history_protocol")
 def test_the_change_of_a_signal(letter: str, number: int) -> None:
     control, library, handle = fresh()
     address = 3 if letter == "F" else 44
@@ -198,6 +200,7 @@ def test_the_change_of_a_signal(letter: str, number: int) -> None:
     "fanuc.concept.history_record_kinds",
 )
 @pytest.mark.covers("fanuc.ODBHIS", "fanuc.ODBHIS.rec_type")
+@pytest.mark.covers("fanuc.concept.history_protocol")
 def test_an_alarm(bit: int, number: int) -> None:
     control, library, handle = fresh()
     numbers = (number, *ENDS.get(bit, ()))
@@ -236,6 +239,7 @@ def test_unused_alarm_groups_never_appear() -> None:
     "fanuc.concept.history_record_kinds",
 )
 @pytest.mark.covers("fanuc.ODBHIS")
+@pytest.mark.covers("fanuc.concept.history_protocol")
 def test_power_on_notes_date_and_time() -> None:
     control, library, handle = fresh()
     control.power_cycle()
@@ -318,6 +322,7 @@ def test_an_alarm_record_byte_by_byte() -> None:
     "fanuc.cnc_clearophis.slct.1",
     "fanuc.cnc_clearophis.err.EW_ATTRIB",
 )
+@pytest.mark.covers("fanuc.concept.history_protocol")
 def test_one_history_is_cleared_alone() -> None:
     control, library, handle = fresh()
 
@@ -401,6 +406,7 @@ def test_a_wrong_table_is_refused_whole() -> None:
 
 
 @pytest.mark.covers("fanuc.cnc_rdhissgnl")
+@pytest.mark.covers("fanuc.concept.history_protocol")
 def test_histories_and_table_outlast_switching_off(tmp_path: Path) -> None:
     control, library, handle = fresh(memory=tmp_path / "memory")
     monitored(library, handle, (11, 3, 1007, 0x18))

@@ -56,6 +56,7 @@ def test_program_of_the_manual() -> None:
 
 
 @pytest.mark.parametrize("inch", [False, True])
+@pytest.mark.covers("fanuc.param.0000_2")
 def test_the_unit_at_power_on_is_that_of_the_setting(inch: bool) -> None:
     library, handle, control = executing("G1 X1. F40.", "G1", inch_input=inch)
     assert g(library, handle, 5, 0) == (0 if inch else 1)
@@ -289,6 +290,8 @@ def test_digits_of_m_are_those_of_the_parameter() -> None:
     assert library.cnc_modal(handle, 106, 0)[1].modal.aux.flag1 == 0x80 | 3
     control.parameters.set(3030, 5)
     assert library.cnc_modal(handle, 106, 0)[1].modal.aux.flag1 == 0x80 | 5
+    for address in (125, 126):  # the second and third M code of a block
+        assert library.cnc_modal(handle, address, 0)[1].modal.aux.flag1 == 5
 
 
 @pytest.mark.parametrize(

@@ -43,6 +43,7 @@ def buffers(library: Any, handle: int) -> list[list[int]]:
 @pytest.mark.covers("fanuc.ODBPOS.idata", "fanuc.ODBPOS.ldata")
 @pytest.mark.covers("fanuc.cnc_absolute", "fanuc.cnc_finstate")
 @pytest.mark.covers("fanuc.ODBPOS")
+@pytest.mark.covers("fanuc.concept.direct_command")
 def test_absolute_motion_of_the_manual() -> None:
     control = PowerMate()
     control.programs.memory.create("O0004", b"O0004\nG0 X10. Y10.\n")
@@ -63,6 +64,7 @@ def test_absolute_motion_of_the_manual() -> None:
 
 
 @pytest.mark.covers("fanuc.example.cnc_incpoint", "fanuc.cnc_incpoint")
+@pytest.mark.covers("fanuc.concept.direct_command", "fanuc.ODBPOS.unit.linear_mm")
 def test_incremental_motion_of_the_manual() -> None:
     control = PowerMate()
     library, handle = at(control)
@@ -74,6 +76,7 @@ def test_incremental_motion_of_the_manual() -> None:
 
 
 @pytest.mark.covers("fanuc.example.cnc_refpoint", "fanuc.cnc_refpoint")
+@pytest.mark.covers("fanuc.concept.direct_command")
 def test_reference_return_of_the_manual() -> None:
     control = PowerMate()
     library, handle = at(control)
@@ -134,6 +137,7 @@ def test_a_dwell_keeps_its_path_waiting() -> None:
 
 @pytest.mark.covers("fanuc.cnc_coordre")
 @pytest.mark.covers("fanuc.cnc_absolute")
+@pytest.mark.covers("fanuc.concept.direct_command")
 def test_setting_a_coordinate() -> None:
     control = PowerMate()
     library, handle = at(control)
@@ -171,6 +175,7 @@ def test_setting_a_coordinate() -> None:
 @pytest.mark.covers(
     "fanuc.ODBEXEC", "fanuc.ODBFIN", "fanuc.cnc_abspoint", "fanuc.cnc_coordre", "fanuc.cnc_dwell"
 )
+@pytest.mark.covers("fanuc.concept.direct_command")
 def test_two_buffers_and_a_completion_flag_per_path(path: int) -> None:
     control = PowerMate()
     library, handle = at(control)
@@ -204,7 +209,22 @@ def test_two_buffers_and_a_completion_flag_per_path(path: int) -> None:
     assert list(library.cnc_finstate(handle)[1].cdata) == none
 
 
+@pytest.mark.covers("fanuc.concept.direct_command", "fanuc.cnc_incpoint", "fanuc.cnc_finstate")
+def test_an_axis_belongs_to_the_path_that_moves_it() -> None:
+    control = PowerMate()
+    library, handle = at(control)
+    library.cnc_incpoint(handle, 4, 1, 1, 6000, idb((1, 5000)))
+    library.cnc_incpoint(handle, 5, 1, 2, 6000, idb((3, 400), (1, -2000)))
+    library.cnc_incpoint(handle, 2, 1, 1, 6000, idb((2, 900)))
+    control.advance(30)
+    assert [axis.velocity > 0.0 for axis in control.status().axes.values()] == [True, True, False]
+    control.advance(2000)
+    assert machine(control) == [3000, 900, 400]
+    assert list(library.cnc_finstate(handle)[1].cdata) == [0, 2, 0, 8, 16, 0, 0, 0]
+
+
 @pytest.mark.covers("fanuc.cnc_finstate")
+@pytest.mark.covers("fanuc.concept.direct_command")
 def test_a_reset_and_an_alarm_empty_the_buffers() -> None:
     for stop in (PowerMate.reset, PowerMate.emergency_stop, lambda control: control.raise_alarm(85, "X")):
         control = PowerMate()
@@ -223,6 +243,7 @@ def test_a_reset_and_an_alarm_empty_the_buffers() -> None:
 
 
 @pytest.mark.covers("fanuc.cnc_finstate")
+@pytest.mark.covers("fanuc.concept.direct_command")
 def test_a_change_of_mode_lets_commands_go_on() -> None:
     control = PowerMate()
     library, handle = at(control)
@@ -264,6 +285,7 @@ def test_a_command_past_a_limit_names_it(axis: int, distance: int, alarm: tuple[
     *(f"fanuc.cnc_{name}.err.EW_BUSY" for name in ("incpoint", "abspoint", "refpoint", "dwell", "coordre")),
     *(f"fanuc.cnc_{name}" for name in ("incpoint", "abspoint", "refpoint", "dwell", "coordre")),
 )
+@pytest.mark.covers("fanuc.concept.direct_command")
 def test_a_running_program_has_the_axes() -> None:
     control = PowerMate()
     library, handle = at(control)
@@ -302,6 +324,7 @@ def test_a_running_program_has_the_axes() -> None:
 )
 @pytest.mark.covers("fanuc.concept.not_on_pmd")
 @pytest.mark.covers("fanuc.cnc_finstate", "fanuc.cnc_refpoint")
+@pytest.mark.covers("fanuc.concept.power_mate_d_limit")
 def test_a_power_mate_d_has_none_of_this() -> None:
     library, handle = at(PowerMate(model="D"))
     zero, fin = idb((1, 1)), fwlib.ODBFIN()
@@ -343,6 +366,7 @@ def test_a_power_mate_d_has_the_functions_of_the_other_sections() -> None:
 @pytest.mark.covers("fanuc.cnc_exebufstat", "fanuc.cnc_setfin")
 @pytest.mark.covers("fanuc.param.8003_7", "fanuc.param.8010")
 @pytest.mark.covers("fanuc.cnc_finstate", "fanuc.cnc_incpoint", "fanuc.cnc_refpoint")
+@pytest.mark.covers("fanuc.common.allmode")
 def test_parameters_allow_direct_commands() -> None:
     control = PowerMate()
     library, handle = at(control)
@@ -373,6 +397,7 @@ def test_parameters_allow_direct_commands() -> None:
         (1, 0, 1, 500, ((1, 100_000_000),), "EW_DATA"),
     ],
 )
+@pytest.mark.covers("fanuc.concept.direct_command")
 def test_a_command_is_refused_whole(
     path: int, nmod: int, count: int, feed: int, values: tuple[tuple[int, int], ...], code: str
 ) -> None:
@@ -608,6 +633,7 @@ def test_an_operation_signal_is_refused(number: int, value: int, axis: int, code
     "fanuc.cnc_setfin.err.EW_BUSY",
 )  # fmt: skip
 @pytest.mark.covers("fanuc.cnc_exebufstat", "fanuc.cnc_opdi")
+@pytest.mark.covers("fanuc.concept.program_busy_conditions")
 def test_a_busy_control_is_asked_again() -> None:
     control, library, handle = started()
     library.cnc_wropnlgnrl(handle, fwlib.IODBGNRL(type=1, sgnal=1))

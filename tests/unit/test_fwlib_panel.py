@@ -242,6 +242,7 @@ def test_dry_run(value: int, mm_min: int) -> None:
 @pytest.mark.covers("fanuc.IODBSGNL.mem_prtct.0", "fanuc.IODBSGNL.mem_prtct.1")
 @pytest.mark.covers("fanuc.IODBSGNL.mem_prtct")
 @pytest.mark.covers("fanuc.IODBSGNL")
+@pytest.mark.covers("fanuc.concept.write_protection_programs", "fanuc.concept.protect_key")
 def test_memory_protection() -> None:
     control, library, handle = written(mem_prtct=1)
     assert control.state.protection_keys == {1, 2, 3, 4}

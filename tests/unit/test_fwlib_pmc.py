@@ -232,6 +232,7 @@ def test_writing_is_refused_and_writes_nothing(head: tuple[int, ...], length: in
 @pytest.mark.covers("fanuc.pmc_rdpmcrng")
 @pytest.mark.covers("fanuc.EW_NOPMC", "fanuc.pmc_rdpmcrng.err.EW_NOPMC", "fanuc.pmc_wrpmcrng.err.EW_NOPMC")
 @pytest.mark.covers("fanuc.pmc_wrpmcrng")
+@pytest.mark.covers("fanuc.common.allmode")
 def test_a_control_without_a_pmc() -> None:
     library, handle = at(PowerMate(options=("custom_macro",)))
     assert library.pmc_rdpmcrng(handle, D, 0, 3, 3, 9)[0] is EW.EW_NOPMC
@@ -261,6 +262,12 @@ def test_which_addresses_there_are() -> None:
     assert library.pmc_rdpmcinfo(handle, -2)[0] is EW.EW_ATTRIB
 
 
+@pytest.mark.covers(
+    "fanuc.pmc.area.T.0000_0079",
+    "fanuc.pmc.area.K.0000_0019",
+    "fanuc.pmc.area.C.0000_0079",
+    "fanuc.pmc.area.D.0000_1859",
+)
 def test_timers_keep_relays_counters_and_data_outlast_switching_off(tmp_path: Path) -> None:
     control = PowerMate(memory=tmp_path / "memory")
     library, handle = at(control)

@@ -352,6 +352,7 @@ def test_a_program_that_goes_out_shows_as_output() -> None:
 )
 @pytest.mark.covers("fanuc.cnc_statinfo")
 @pytest.mark.covers("fanuc.ODBST")
+@pytest.mark.covers("fanuc.concept.compare_running", "fanuc.concept.background_edit")
 def test_edit_state() -> None:
     control = PowerMate()
     library, handle = at(control)
@@ -409,6 +410,7 @@ def signed(bits: int) -> int:
 )  # fmt: skip
 @pytest.mark.covers("fanuc.cnc_rdalminfo")
 @pytest.mark.covers("fanuc.ODBALM", "fanuc.ODBALM.data")
+@pytest.mark.covers("fanuc.concept.alarm_ps000_ps101")
 def test_an_alarm_sets_the_bit_of_its_group_and_is_found_by_it(bit: int, number: int) -> None:
     control = PowerMate()
     library, handle = at(control)
@@ -511,6 +513,7 @@ def test_alarms_with_axis_and_text() -> None:
         (-1, 6, "EW_NUMBER"),
     ),
 )
+@pytest.mark.covers("fanuc.concept.length_argument")
 def test_alarm_information_is_refused(type_: int, length: int, code: str) -> None:
     library, handle = at(PowerMate())
     assert library.cnc_rdalminfo(handle, type_, 8, length)[0] is fwlib.EW[code]

@@ -200,6 +200,7 @@ def test_pmc_areas_have_a_letter_and_ends() -> None:
 @pytest.mark.covers("fanuc.cnc_wrparam", "fanuc.cnc_rdparam", "fanuc.ALL_AXES")
 @covers("IODBPSD.datano", "IODBPSD.type", "IODBPSD.u.ldata", "IODBPSD.u.ldatas")
 @pytest.mark.covers("fanuc.struct.IODBPSD")
+@pytest.mark.covers("fanuc.concept.axis_number", "fanuc.ncparam.1320", "fanuc.ncparam.1321")
 def test_stroke_limits_are_written_and_read_by_number_and_axis() -> None:
     control, handle = attached()
     assert fwlib.cnc_wrparam(handle, 8, psd(1320, 2, ldata=98_765)) == OK
@@ -214,6 +215,7 @@ def test_stroke_limits_are_written_and_read_by_number_and_axis() -> None:
 @covers("IODBPSD.u.cdata", "IODBPSD.u.cdatas", "IODBPSD.u.idata", "IODBPSD.u.idatas")
 @pytest.mark.covers("fanuc.cnc_rdparam", "fanuc.cnc_wrparam")
 @pytest.mark.covers("fanuc.struct.IODBPSD")
+@pytest.mark.covers("fanuc.concept.c_types", "fanuc.concept.bit_param_rmw")
 def test_parameters_of_bits_and_words_act() -> None:
     control, handle = attached()
     assert fwlib.cnc_wrparam(handle, 5, psd(3202, 0, cdata=0x11)) == OK
@@ -232,6 +234,7 @@ def test_parameters_of_bits_and_words_act() -> None:
 @pytest.mark.parametrize(("number", "size"), [(3202, 1), (6710, 1), (1410, 2), (6711, 4)])
 @pytest.mark.covers("fanuc.cnc_rdparar")
 @pytest.mark.covers("fanuc.struct.ODBPARAIF")
+@pytest.mark.covers("fanuc.concept.param_record_stream")
 def test_types_of_parameters_are_the_bytes_of_their_records(number: int, size: int) -> None:
     control, handle = attached()
     code, info = fwlib.cnc_rdparainfo(handle, number, 1)
@@ -283,6 +286,7 @@ def test_diagnosis_data_of_a_control_that_moves() -> None:
 @pytest.mark.covers("fanuc.cnc_rdseqnum")
 @covers("ODBDY.pos.faxis.absolute", "ODBDY.pos.faxis.machine", "ODBDY.pos.faxis.relative", "ODBSEQ.data")
 @pytest.mark.covers("fanuc.struct.ODBDY", "fanuc.struct.ODBSEQ")
+@pytest.mark.covers("fanuc.concept.axis_number")
 def test_positions_of_all_axes_at_once() -> None:
     control, handle = attached()
     control.control.offsets.set("G54", {"X": 2.0, "Y": -1.0})
@@ -303,6 +307,7 @@ def test_positions_of_all_axes_at_once() -> None:
 @covers("ODBM.datano", "ODBM.mcr_val", "ODBTOFS.datano", "ODBTOFS.type", "ODBTOFS.data", "PRGDIR.prg_data")
 @pytest.mark.covers("fanuc.cnc_rdmacro", "fanuc.cnc_rdprogdir", "fanuc.cnc_rdtofs")
 @pytest.mark.covers("fanuc.struct.ODBM", "fanuc.struct.ODBTOFS", "fanuc.struct.PRGDIR")
+@pytest.mark.covers("fanuc.format.progdir_type0", "fanuc.concept.macro_empty")
 def test_variables_offsets_and_the_directory() -> None:
     control, handle = attached()
     control.macros.set(502, -12.75)
@@ -366,6 +371,7 @@ def test_modules_of_the_control() -> None:
 
 @covers("cnc_refpoint")
 @pytest.mark.parametrize("axis", [1, 2, 3])
+@pytest.mark.covers("fanuc.concept.direct_command")
 def test_the_axis_that_is_named_goes_to_its_reference_position(axis: int) -> None:
     control, handle = attached()
     control.parameters.set(8003, 1 << 7)
@@ -397,6 +403,7 @@ VALUES = {
 
 
 @pytest.mark.parametrize("name", [pytest.param(each, marks=covers(each)) for each in CODES])
+@pytest.mark.covers("fanuc.concept.return_convention")
 def test_a_call_answers_the_code_of_the_manual(name: str) -> None:
     control, handle = attached()
     if name == "EW_PARAM":
@@ -408,6 +415,7 @@ def test_a_call_answers_the_code_of_the_manual(name: str) -> None:
 
 @covers("EW_NOOPT")
 @pytest.mark.covers("fanuc.cnc_rdopmsg")
+@pytest.mark.covers("fanuc.option.param_write", "fanuc.common.allmode")
 def test_an_option_that_is_not_fitted_is_refused() -> None:
     control = PowerMate(options=("pmc_axis",))
     fwlib.detach()
