@@ -182,8 +182,7 @@ def test_actual_feed_in_inch_has_two_decimals() -> None:
     control.advance(2000)
     assert fwlib.cnc_actf(handle)[1].data == 5550
     control, handle = attached(inch_input=True, rotary=(2,))
-    moved(control, "G0 X1.")
-    registered(control, O7="\nG1 B90. F300\nM30\n")
+    registered(control, O7="\nG1 A90. F300\nM30\n")
     running(control, 7)
     control.advance(1000)
     assert fwlib.cnc_actf(handle)[1].data == 300  # deg/min

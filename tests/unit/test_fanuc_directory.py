@@ -201,6 +201,25 @@ def test_example_sequence_number_is_kept_by_blocks_without_one() -> None:
     assert fwlib.cnc_rdseqnum(handle)[1].data == 40
 
 
+@covers("concept.seqnum_retention", "cnc_rdseqnum", "ODBSEQ.data", "concept.subprogram_numbers")
+def test_a_subprogram_without_sequence_numbers_keeps_that_of_its_caller() -> None:
+    control, handle = attached()
+    registered(
+        control,
+        O1="\nN5 G4P1\nN12345\nM98P2\nN30 M30\n",
+        O2="\nG4P40\nM98P3\nM30\n",
+        O3="\nG4P50\nN7 G4P60\nM99\n",
+    )
+    running(control, 1)
+    found = []
+    while control.programs.in_operation:
+        numbers = fwlib.cnc_rdprgnum(handle)[1]
+        found.append((numbers.mdata, numbers.data, fwlib.cnc_rdseqnum(handle)[1].data))
+        control.advance(5)
+    in_order = list(dict.fromkeys(found))
+    assert in_order[-3:] == [(1, 2, 12345), (1, 3, 12345), (1, 3, 7)]
+
+
 @covers("cnc_rdexecprog", "cnc_rdexecprog.err.EW_LENGTH")
 @pytest.mark.covers("fanuc.concept.subprogram_numbers", "fanuc.concept.truncation")
 def test_the_program_in_execution() -> None:
@@ -313,6 +332,9 @@ def test_mdi_pointers() -> None:
     assert pointers()[:2] == (0, 2)
     assert pointers()[3] in (3, 4)  # read ahead
     control.reset()
+    assert fwlib.cnc_wrmdipntr(handle, 3) == OK
+    assert fwlib.cnc_wrmdiprog(handle, len(text), text) == OK
+    assert pointers() == (0, 0, 0, 0)  # another program begins at its head
 
 
 @pytest.mark.covers("fanuc.cnc_rdmdipntr", "fanuc.cnc_wrmdipntr", "fanuc.cnc_wrmdiprog")
@@ -363,6 +385,13 @@ def test_a_start_begins_at_the_sequence_number_that_was_sought() -> None:
     control.cycle_start()  # from its head again
     control.advance(5000)
     assert list(fwlib.cnc_absolute(handle, -1, 12)[1].data[:2]) == [2500, 5000]
+    registered(control, O8="\nN20 G1 Y1. F6000\nN40 X4.\nM30\n")
+    assert fwlib.cnc_seqsrch(handle, 20) == OK
+    assert fwlib.cnc_search(handle, 8) == OK  # the cursor is that of the selected program
+    assert fwlib.cnc_rdexecprog(handle, 5)[3] == b"O0008"
+    assert fwlib.cnc_seqsrch(handle, 30) == EW.EW_DATA
+    assert fwlib.cnc_seqsrch(handle, 40) == OK
+    assert (fwlib.cnc_rdseqnum(handle)[1].data, fwlib.cnc_rdprgnum(handle)[1].data) == (40, 8)
 
 
 @pytest.mark.covers(

@@ -425,6 +425,10 @@ def _background(control: PowerMate, handle: int) -> None:
     control.programs.edit(9001, background=True)
 
 
+def _foreground(control: PowerMate, handle: int) -> None:
+    control.programs.edit(9001)
+
+
 def _download(control: PowerMate, handle: int) -> None:
     assert fwlib.cnc_dwnstart(handle) == OK
 
@@ -490,6 +494,7 @@ def _key(control: PowerMate, handle: int) -> None:
 BUSY, PROT = EW.EW_BUSY, EW.EW_PROT
 MATRIX: list[tuple[Callable[[PowerMate, int], None], dict[str, EW]]] = [
     (_background, {"dwnstart": BUSY, "delete": BUSY, "delall": BUSY}),
+    (_foreground, {"delall": BUSY}),
     (_download, {"dwnstart": BUSY, "search": BUSY, "delete": BUSY, "delall": BUSY}),
     (_compare, {"dwnstart": BUSY, "delete": BUSY, "delall": BUSY}),
     (_alarm_000, dict.fromkeys(CALLS, BUSY)),
