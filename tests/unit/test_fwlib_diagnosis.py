@@ -87,6 +87,7 @@ def test_a_diagnosis_value_of_each_kind(
 @pytest.mark.covers("fanuc.cnc_diagnoss.err.EW_LENGTH")
 @pytest.mark.covers("fanuc.ODBDGN")
 @pytest.mark.covers("fanuc.common.ALL_AXES2")
+@pytest.mark.covers("fanuc.diag.kind.2word_axis")
 def test_all_axes_at_once() -> None:
     control, library, handle = moving()
     control.advance(8000)
@@ -153,6 +154,7 @@ def test_an_entry_of_a_range(number: int, axis: int, kind: int, length: int) -> 
 
 
 @pytest.mark.covers("fanuc.cnc_diagnosr")
+@pytest.mark.covers("fanuc.diag.padding")
 def test_a_range_of_diagnosis_numbers() -> None:
     _, library, handle = arranged("byte_axis")
     code, first, last, used, data = library.cnc_diagnosr(handle, 25, -1, 250, 99)
@@ -349,6 +351,7 @@ def test_messages_are_refused(kind: int, length: int, options: Any, code: str) -
     assert library.cnc_rdopmsg(handle, kind, length)[0] is EW[code]
 
 
+@pytest.mark.covers("fanuc.diag.kind.byte", "fanuc.diag.kind.byte_axis")
 def test_what_moves_is_told_of_each_axis() -> None:
     control, library, handle = moving("G1 X90. Y-45. F1200\nG4 X3.\nM30")
 
@@ -363,6 +366,7 @@ def test_what_moves_is_told_of_each_axis() -> None:
 
 
 @pytest.mark.covers("fanuc.cnc_diagnoss")
+@pytest.mark.covers("fanuc.diag.kind.bit", "fanuc.diag.kind.byte_axis")
 def test_what_moves_by_hand_and_what_stops_is_told() -> None:
     control = PowerMate()
     library, handle = at(control)

@@ -103,6 +103,8 @@ def test_reference_return_of_the_manual() -> None:
             {"rotary": (1,)}, 12345, "A", 0.001, marks=pytest.mark.covers("fanuc.ODBPOS.unit.rotary")
         ),
         ({}, 12345, "X", 0.001),
+        ({"inch_output": True, "rotary": (2,)}, 23456, "A", 0.001),  # each axis has its own
+        ({"inch_output": True, "rotary": (1,)}, -9876, "X", 25.4e-4),
     ],
 )
 @pytest.mark.covers("fanuc.cnc_incpoint")
@@ -110,9 +112,10 @@ def test_reference_return_of_the_manual() -> None:
 def test_units_of_positions(more: dict[str, Any], value: int, axis: str, unit: float) -> None:
     control = PowerMate(**more)
     library, handle = at(control)
-    assert library.cnc_incpoint(handle, 2, 0, 1, 3000, idb((1, value)))[0] == 0
+    number = control.units.axis_names.index(axis) + 1
+    assert library.cnc_incpoint(handle, 2, 0, 1, 3000, idb((number, value)))[0] == 0
     control.advance(3000)
-    assert control.status().axes[control.units.axis_name(1)].machine == pytest.approx(value * unit, abs=1e-9)
+    assert control.status().axes[axis].machine == pytest.approx(value * unit, abs=1e-9)
 
 
 @pytest.mark.covers("fanuc.cnc_finstate", "fanuc.cnc_incpoint")
@@ -553,6 +556,7 @@ def test_jog_feed_of_one_axis_and_of_all() -> None:
 )
 @pytest.mark.covers("fanuc.cnc_incpoint")
 @pytest.mark.covers("fanuc.cnc_opdi")
+@pytest.mark.covers("fanuc.cnc_rdcurrent")
 def test_an_axis_whose_servo_is_off_does_not_move(bit: int) -> None:
     control = PowerMate(axes=6)
     library, handle = at(control)
@@ -587,16 +591,17 @@ def test_torque_mode_of_an_axis(bit: int) -> None:
 @pytest.mark.covers("fanuc.cnc_opdi.number.13", "fanuc.cnc_opdi.sig13.axis", "fanuc.cnc_opdi.sig13.formula")
 @pytest.mark.covers("fanuc.cnc_diagnoss")
 @pytest.mark.covers("fanuc.cnc_opdi")
+@pytest.mark.covers("fanuc.diag.kind.word_axis", "fanuc.param.2086")
 def test_torque_override_limits_the_current() -> None:
-    control, library, handle = started("G0 X900. Y900. Z900.")
+    control, library, handle = started("G0 X900. Y-900. Z900.")
     control.advance(200)
     give(library, handle, 13, 51)
     give(library, handle, 13, 102, 2)
     assert [library.cnc_diagnoss(handle, 202, axis, 6)[1].u.idata for axis in (1, 2, 3)] == [200, 400, 200]
-    assert library.cnc_rdcurrent(handle)[1][:3] == [round(1782 * each) for each in (0.2, 0.4, 0.2)]
+    assert library.cnc_rdcurrent(handle)[1][:3] == [round(1782 * each) for each in (0.2, -0.4, 0.2)]
     give(library, handle, 13, 0, 1)
     give(library, handle, 13, 255, 3)
-    assert library.cnc_rdcurrent(handle)[1][:3] == [0, round(1782 * 0.4), 1782]
+    assert library.cnc_rdcurrent(handle)[1][:3] == [0, -round(1782 * 0.4), 1782]
 
 
 @pytest.mark.parametrize(

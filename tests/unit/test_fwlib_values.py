@@ -257,6 +257,14 @@ def test_types_of_parameters_are_the_bytes_of_their_records(number: int, size: i
 )  # fmt: skip
 @pytest.mark.covers("fanuc.cnc_diagnoss")
 @pytest.mark.covers("fanuc.ODBDGN")
+@pytest.mark.covers(
+    "fanuc.diag.kind.byte",
+    "fanuc.diag.kind.byte_axis",
+    "fanuc.diag.kind.word",
+    "fanuc.diag.kind.word_axis",
+    "fanuc.diag.kind.2word",
+    "fanuc.diag.kind.2word_axis",
+)
 def test_diagnosis_data_of_a_control_that_moves() -> None:
     control, handle = attached()
     registered(control, O7="\nG1X20.Y-10.F3000\nM30\n")
@@ -415,7 +423,7 @@ def test_a_call_answers_the_code_of_the_manual(name: str) -> None:
 
 @covers("EW_NOOPT")
 @pytest.mark.covers("fanuc.cnc_rdopmsg")
-@pytest.mark.covers("fanuc.option.param_write", "fanuc.common.allmode")
+@pytest.mark.covers("fanuc.common.allmode")
 def test_an_option_that_is_not_fitted_is_refused() -> None:
     control = PowerMate(options=("pmc_axis",))
     fwlib.detach()
