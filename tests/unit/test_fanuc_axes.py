@@ -55,6 +55,7 @@ def test_a_handle_is_opened_used_and_closed() -> None:
 @pytest.mark.covers("fanuc.cnc_absolute")
 @covers("cnc_allclibhndl2", "range.node")
 @pytest.mark.covers("fanuc.concept.handle_lifecycle")
+@pytest.mark.covers("fanuc.cnc_absolute.err.EW_ATTRIB")
 def test_nodes_0_to_7_are_controls_of_their_own() -> None:
     attached()
     controls = [PowerMate(axes=axes) for axes in (1, 2, 4)]
@@ -80,6 +81,8 @@ def test_nodes_0_to_7_are_controls_of_their_own() -> None:
 
 @pytest.mark.covers("fanuc.cnc_absolute")
 @pytest.mark.covers("fanuc.concept.handle_lifecycle", "fanuc.range.node")
+@pytest.mark.covers("fanuc.cnc_absolute.err.EW_ATTRIB")
+@pytest.mark.covers("fanuc.cnc_allclibhndl")
 def test_the_default_node_can_be_changed_and_nodes_be_listed() -> None:
     attached()
     fwlib.attach(5, PowerMate(axes=2, model="D"))
@@ -124,6 +127,8 @@ def test_a_fault_of_a_node_is_the_answer_of_every_call() -> None:
     "fanuc.concept.download_session",
     "fanuc.concept.upload_session",
 )
+@pytest.mark.covers("fanuc.cnc_download.err.EW_FUNC")
+@pytest.mark.covers("fanuc.cnc_allclibhndl")
 def test_closing_a_handle_breaks_its_transfers_off_and_no_others() -> None:
     control, handle = attached()
     _, other = fwlib.cnc_allclibhndl()
@@ -140,6 +145,7 @@ def test_closing_a_handle_breaks_its_transfers_off_and_no_others() -> None:
 @pytest.mark.covers("fanuc.cnc_freelibhndl", "fanuc.cnc_relative")
 @pytest.mark.covers("fanuc.cnc_wrrelpos")
 @pytest.mark.covers("fanuc.concept.handle_lifecycle", "fanuc.common.handle2")
+@pytest.mark.covers("fanuc.cnc_allclibhndl")
 def test_two_sessions_have_handles_of_their_own() -> None:
     control, handle = attached()
     session = fwlib.Session()
@@ -477,6 +483,7 @@ def test_reads_need_no_option() -> None:
 )
 @pytest.mark.covers("fanuc.struct.ODBDY")
 @pytest.mark.covers("fanuc.concept.subprogram_numbers")
+@pytest.mark.covers("fanuc.cnc_wrrelpos")
 def test_the_dynamic_data_are_those_of_the_single_functions() -> None:
     control, handle = attached(axes=4, rotary=(4,))
     registered(
@@ -537,6 +544,7 @@ ENDS = {
 )
 @pytest.mark.covers("fanuc.ODBDY.alarm", "fanuc.struct.ODBDY")
 @pytest.mark.covers("fanuc.concept.alarm_ps000_ps101")
+@pytest.mark.covers("fanuc.cnc_rddynamic")
 def test_bits_of_the_alarm_status(bit: int) -> None:
     control, handle = attached()
 
@@ -600,6 +608,7 @@ def test_a_program_that_tries_again_what_is_busy_sees_time_pass() -> None:
     assert control.positions.read()[0].machine >= 690
 
 
+@pytest.mark.covers("fanuc.cnc_allclibhndl2", "fanuc.cnc_actf")
 def test_controls_with_one_clock_stay_in_step() -> None:
     attached()
     clock: Any = Poll(3)

@@ -314,6 +314,12 @@ def test_example_stroke_limits_act_on_the_machine() -> None:
 @pytest.mark.covers("fanuc.cnc_wrparam")
 @pytest.mark.covers("fanuc.struct.ODBPARAIF")
 @pytest.mark.covers("fanuc.concept.length_argument", "fanuc.concept.axis_number", "fanuc.common.allmode")
+@pytest.mark.covers(
+    "fanuc.paramtype.two_word_axis",
+    "fanuc.enum.param_axis.0",
+    "fanuc.enum.param_axis.1..m",
+    "fanuc.enum.param_axis.ALL_AXES",
+)
 def test_parameters_that_are_refused_change_nothing() -> None:
     control, handle = attached(options=("pmc_axis",))
     before = {key: control.parameters.value(*key) for key in control.parameters._values}
@@ -419,6 +425,7 @@ SIZES = {0: 1, 1: 1, 2: 2, 3: 4}
 )  # fmt: skip
 @pytest.mark.covers("fanuc.concept.axis_number")
 @pytest.mark.covers("fanuc.ALL_AXES", "fanuc.MAX_AXIS")
+@pytest.mark.covers("fanuc.paramtype.byte_axis", "fanuc.paramtype.two_word_axis")
 def test_a_range_of_parameters_is_a_sequence_of_records() -> None:
     control, handle = attached(axes=3)
     control.parameters.set(1420, 24_000, 2)
@@ -505,6 +512,7 @@ def record(number: int, kind: int, axis: int, *values: int) -> bytes:
 @pytest.mark.covers("fanuc.cnc_wrparas")
 @pytest.mark.covers("fanuc.cnc_rdparar")
 @pytest.mark.covers("fanuc.concept.param_record_stream")
+@pytest.mark.covers("fanuc.enum.prm_attr.3", "fanuc.paramtype.two_word_axis")
 def test_what_is_read_as_records_can_be_written_back() -> None:
     control, handle = attached()
     for number in (1420, 1423):
@@ -614,6 +622,7 @@ BITS: dict[str, tuple[int, int, Iterable[int], Iterable[int]]] = {
 )
 @pytest.mark.covers("fanuc.struct.ODBPARAIF")
 @pytest.mark.covers("fanuc.concept.setting_subset", "fanuc.concept.sparse_parameters")
+@pytest.mark.covers("fanuc.ODBPARAIF.prm_type.bit0_1")
 def test_attribute_bits(name: str) -> None:
     shift, mask, have, have_not = BITS[name]
     for number in have:
@@ -628,6 +637,9 @@ def test_attribute_bits(name: str) -> None:
 @covers("ODBPARAIF.prm_type.bit0_1")
 @pytest.mark.covers("fanuc.struct.ODBPARAIF")
 @pytest.mark.covers("fanuc.concept.param_record_stream", "fanuc.concept.sparse_parameters")
+@pytest.mark.covers(
+    "fanuc.enum.prm_attr.0", "fanuc.enum.prm_attr.1", "fanuc.enum.prm_attr.2", "fanuc.enum.prm_attr.3"
+)
 def test_type_attribute() -> None:
     assert [attributes(number) & 3 for number in (3201, 6710, 1410, 6711, 1006, 1020, 1825, 1320)] == [
         0,

@@ -316,6 +316,7 @@ def test_every_parameter_has_a_default_that_it_takes() -> None:
 # ---------------------------------------------------------------------- what survives
 
 
+@pytest.mark.covers("fanuc.cnc_rddynamic")
 def test_a_snapshot_is_gone_back_to() -> None:
     control, handle = attached(axes=2)
     registered(control, O7="\nN10 G1 X20. F3000\nN20 Y-7.\nM30\n")
@@ -345,6 +346,7 @@ def test_a_snapshot_is_gone_back_to() -> None:
 
 
 @pytest.mark.covers("fanuc.cnc_download", "fanuc.cnc_dwnend")
+@pytest.mark.covers("fanuc.cnc_allclibhndl", "fanuc.cnc_dwnstart", "fanuc.cnc_delete")
 def test_two_programs_in_two_threads_have_one_control() -> None:
     control, _ = attached(axes=1)
     opened = []

@@ -160,6 +160,7 @@ def test_program_information() -> None:
 @pytest.mark.covers("fanuc.ODBPRO.data", "fanuc.ODBPRO.mdata")
 @pytest.mark.covers("fanuc.struct.ODBPRO")
 @pytest.mark.covers("fanuc.concept.selected_program")
+@pytest.mark.covers("fanuc.cnc_rdseqnum")
 def test_example_program_numbers_in_a_subprogram() -> None:
     control, handle = attached()
     registered(
@@ -202,6 +203,7 @@ def test_example_sequence_number_is_kept_by_blocks_without_one() -> None:
 
 
 @covers("concept.seqnum_retention", "cnc_rdseqnum", "ODBSEQ.data", "concept.subprogram_numbers")
+@pytest.mark.covers("fanuc.cnc_rdprgnum", "fanuc.ODBDY.seqnum")
 def test_a_subprogram_without_sequence_numbers_keeps_that_of_its_caller() -> None:
     control, handle = attached()
     registered(
@@ -215,6 +217,7 @@ def test_a_subprogram_without_sequence_numbers_keeps_that_of_its_caller() -> Non
     while control.programs.in_operation:
         numbers = fwlib.cnc_rdprgnum(handle)[1]
         found.append((numbers.mdata, numbers.data, fwlib.cnc_rdseqnum(handle)[1].data))
+        assert fwlib.cnc_rddynamic(handle, 1, 38)[1].seqnum == found[-1][2]
         control.advance(5)
     in_order = list(dict.fromkeys(found))
     assert in_order[-3:] == [(1, 2, 12345), (1, 3, 12345), (1, 3, 7)]
@@ -262,6 +265,7 @@ def test_example_mdi_program() -> None:
 )  # fmt: skip
 @pytest.mark.covers("fanuc.cnc_wrmdiprog")
 @pytest.mark.covers("fanuc.concept.mode_matrix", "fanuc.concept.mdi_program")
+@pytest.mark.covers("fanuc.mode.MDI")
 def test_mdi_programs_that_are_refused() -> None:
     control, handle = attached(axes=1)
 
@@ -367,6 +371,8 @@ def test_mdi_pointers_that_are_refused() -> None:
 @covers("cnc_seqsrch", "cnc_rewind")
 @pytest.mark.covers("fanuc.cnc_absolute")
 @pytest.mark.covers("fanuc.concept.seqnum_retention", "fanuc.concept.selected_program")
+@pytest.mark.covers("fanuc.cnc_search", "fanuc.cnc_seqsrch.err.EW_DATA", "fanuc.enum.search.foreground")
+@pytest.mark.covers("fanuc.cnc_rdprgnum")
 def test_a_start_begins_at_the_sequence_number_that_was_sought() -> None:
     control, handle = attached(axes=2)
     registered(control, O7="\nN10 G1 X10. F6000\nN20 Y5.\nN30 X2.5\nM30\n")

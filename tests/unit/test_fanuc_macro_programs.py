@@ -146,6 +146,7 @@ def test_each_of_the_ten_m_codes_calls_its_own_program() -> None:
     assert [control.macros.get(500 + k) for k in range(10)] == [70.0 - 4.0 * k for k in range(10)]
 
 
+@pytest.mark.covers("fanuc.cnc_rdalminfo", "fanuc.ALMINFO.alm.alm_no", "fanuc.ALMINFO.alm.alm_msg")
 def test_an_alarm_of_a_program_has_its_number_and_text() -> None:
     control, handle = attached()
     registered(control, O1="\nG1X2.F6000\n#3000=23(TOOL BROKEN)\nG1X5.\nM30\n")
@@ -180,6 +181,7 @@ def test_an_alarm_of_a_program_has_its_number_and_text() -> None:
         ("G65P1", 122, "FOUR FOLD MACRO MODAL-CALL"),
     ],
 )
+@pytest.mark.covers("fanuc.cnc_rdalminfo")
 def test_errors_of_macros_have_the_controls_numbers(block: str, number: int, text: str) -> None:
     control, handle = attached()
     registered(control, O1=f"\n{block}\nM30\n")
@@ -375,6 +377,7 @@ def until_rest(control: PowerMate) -> RunState:
 
 
 @pytest.mark.covers("fanuc.cnc_wrmacro", "fanuc.cnc_wrmacro.err.EW_DATA")
+@pytest.mark.covers("fanuc.cnc_allclibhndl2")
 def test_two_handles_and_two_controls_do_not_share_variables() -> None:
     first, handle = attached()
     second = PowerMate()

@@ -84,6 +84,8 @@ def test_a_stream_that_is_cut_leaves_no_half_program() -> None:
     "fanuc.cnc_search.err.EW_BUSY",
 )
 @pytest.mark.covers("fanuc.concept.program_busy_conditions", "fanuc.concept.mode_matrix")
+@pytest.mark.covers("fanuc.mode.MDI")
+@pytest.mark.covers("fanuc.cnc_allclibhndl")
 def test_download_session() -> None:
     control, handle = attached()
     assert fwlib.cnc_download(handle, "\n", 1) == EW.EW_FUNC
@@ -159,6 +161,7 @@ def test_streams_that_are_refused(stream: str) -> None:
 @pytest.mark.covers(
     "fanuc.format.download", "fanuc.concept.download_session", "fanuc.concept.duplicate_program"
 )
+@pytest.mark.covers("fanuc.cnc_dwnend", "fanuc.cnc_dwnend.err.EW_DATA")
 def test_the_last_pieces_are_judged_at_the_end() -> None:
     control, handle = attached()
     assert fwlib.cnc_dwnstart(handle) == OK
@@ -297,6 +300,7 @@ def test_example_upload_loop_until_the_percent() -> None:
 )  # fmt: skip
 @pytest.mark.covers("fanuc.cnc_upstart")
 @pytest.mark.covers("fanuc.format.upload", "fanuc.concept.program_busy_conditions")
+@pytest.mark.covers("fanuc.cnc_allclibhndl")
 def test_upload_session() -> None:
     control, handle = attached()
     assert sent(handle, FORMAT) == (OK, OK)
@@ -382,6 +386,7 @@ def test_search_selects_in_mem_and_edit_only() -> None:
 @pytest.mark.covers(
     "fanuc.concept.program_busy_conditions", "fanuc.concept.mode_matrix", "fanuc.concept.selected_program"
 )
+@pytest.mark.covers("fanuc.mode.OTHER")
 def test_delete_takes_one_program_in_any_mode_but_mdi() -> None:
     control, handle = _memory()
     assert fwlib.cnc_delete(handle, 12) == OK  # in MEM
@@ -401,6 +406,7 @@ def test_delete_takes_one_program_in_any_mode_but_mdi() -> None:
     "fanuc.concept.selected_program",
     "fanuc.ncparam.3202_0",
 )
+@pytest.mark.covers("fanuc.mode.EDIT")
 def test_delall_takes_every_program_and_the_selection() -> None:
     control, handle = _memory()
     control.select_mode("EDIT")
@@ -526,6 +532,7 @@ MATRIX: list[tuple[Callable[[PowerMate, int], None], dict[str, EW]]] = [
     "fanuc.concept.mode_matrix",
     "fanuc.concept.selected_program",
 )
+@pytest.mark.covers("fanuc.mode.EDIT", "fanuc.mode.MDI", "fanuc.enum.search.foreground")
 def test_refusal_matrix(state: Callable[[PowerMate, int], None], answers: dict[str, EW], call: str) -> None:
     control, handle = _memory()
     control.select_mode("EDIT")
@@ -551,6 +558,9 @@ def test_the_selected_program_is_not_deleted() -> None:
 
 @pytest.mark.covers("fanuc.cnc_delete", "fanuc.cnc_search")
 @pytest.mark.covers("fanuc.concept.program_busy_conditions", "fanuc.concept.op_signal")
+@pytest.mark.covers(
+    "fanuc.cnc_delall", "fanuc.cnc_delall.err.EW_BUSY", "fanuc.mode.OTHER", "fanuc.enum.search.background"
+)
 def test_in_other_modes_than_edit_and_mem_the_op_signal_does_not_matter() -> None:
     control, handle = _memory()
     _running(control, handle)
@@ -601,6 +611,7 @@ def test_parameters_protect_programs(
 @covers("ncparam.3290_7")
 @pytest.mark.covers("fanuc.cnc_delete")
 @pytest.mark.covers("fanuc.concept.write_protection_programs", "fanuc.concept.protect_key")
+@pytest.mark.covers("fanuc.cnc_delete.err.EW_PROT", "fanuc.cnc_dwnstart", "fanuc.cnc_dwnstart.err.EW_PROT")
 def test_which_key_protects_programs() -> None:
     control, handle = _memory()
     control.protect_key(key=1)
@@ -616,6 +627,7 @@ def test_which_key_protects_programs() -> None:
 
 @pytest.mark.covers("fanuc.cnc_download")
 @pytest.mark.covers("fanuc.concept.compare_running")
+@pytest.mark.covers("fanuc.cnc_dwnend")
 def test_a_comparison_tells_whether_programs_are_the_same_and_changes_nothing() -> None:
     control, handle = attached()
     assert sent(handle, FORMAT) == (OK, OK)

@@ -109,6 +109,7 @@ def test_all_axes_at_once() -> None:
         (301, -2, "EW_ATTRIB"),
     ),
 )
+@pytest.mark.covers("fanuc.diag.axis.0", "fanuc.diag.axis.1..m")
 def test_a_diagnosis_is_refused(number: int, axis: int, code: str) -> None:
     library, handle = at(PowerMate())
     assert library.cnc_diagnoss(handle, number, axis, 28)[0] is EW[code]
@@ -155,6 +156,9 @@ def test_an_entry_of_a_range(number: int, axis: int, kind: int, length: int) -> 
 
 @pytest.mark.covers("fanuc.cnc_diagnosr")
 @pytest.mark.covers("fanuc.diag.padding")
+@pytest.mark.covers(
+    "fanuc.diag.type_attr.0", "fanuc.diag.type_attr.1", "fanuc.diag.type_attr.2", "fanuc.diag.type_attr.3"
+)
 def test_a_range_of_diagnosis_numbers() -> None:
     _, library, handle = arranged("byte_axis")
     code, first, last, used, data = library.cnc_diagnosr(handle, 25, -1, 250, 99)
@@ -162,6 +166,7 @@ def test_a_range_of_diagnosis_numbers() -> None:
     numbers = [int.from_bytes(data[k : k + 2], "little") for k in (0, 6, 14, 24, 34, 50)]
     assert numbers == [30, 31, 200, 201, 202, 203]
     assert data[:6] == b"\x1e\0\0\2\xad\0"
+    assert [data[k + 3] for k in (0, 6, 14, 24, 34, 50)] == [2, 3, 0, 1, 2, 1]  # the kinds
     assert data[14:24] == b"\xc8\0\xff\0\0\x10\0\0\0\0"
     assert data[34:50] == b"\xca\0\xff\2" + b"\x58\2\xe8\3\xe8\3" + bytes(6)
 
@@ -244,6 +249,7 @@ def test_figures_of_axes(system: str, mm: int, inch: int, degree: int) -> None:
     "fanuc.param.1004_1",
     "fanuc.concept.increment_system",
 )
+@pytest.mark.covers("fanuc.units.IS_A", "fanuc.units.IS_B", "fanuc.units.IS_C")
 def test_figures_of_tool_offsets_and_macro_variables(
     kind: int, digits: int, system: str, mm: int, inch: int
 ) -> None:
@@ -323,6 +329,7 @@ def test_the_manuals_program_prints_the_message() -> None:
     control.operator_message(999, "AND ANOTHER")
     code, count, messages = library.cnc_rdopmsg3(handle, -1, 5)
     assert (code, count, [each.datano for each in messages]) == (0, 2, [100, 999])
+    assert printed()[:4] == "0100"  # the first one
 
 
 @pytest.mark.covers("fanuc.cnc_rdopmsg")
@@ -352,6 +359,8 @@ def test_messages_are_refused(kind: int, length: int, options: Any, code: str) -
 
 
 @pytest.mark.covers("fanuc.diag.kind.byte", "fanuc.diag.kind.byte_axis")
+@pytest.mark.covers("fanuc.diag.axis.1..m")
+@pytest.mark.covers("fanuc.cnc_diagnoss")
 def test_what_moves_is_told_of_each_axis() -> None:
     control, library, handle = moving("G1 X90. Y-45. F1200\nG4 X3.\nM30")
 

@@ -249,6 +249,7 @@ def test_power_on_notes_date_and_time() -> None:
 @pytest.mark.covers("fanuc.cnc_rdophistry")
 @pytest.mark.covers("fanuc.ODBHIS.s_no", "fanuc.ODBHIS.e_no")
 @pytest.mark.covers("fanuc.ODBHIS")
+@pytest.mark.covers("fanuc.cnc_stopophis")
 def test_fewer_records_than_asked_for() -> None:
     control, library, handle = fresh()
     for code in (65, 66, 67):
@@ -323,6 +324,9 @@ def test_an_alarm_record_byte_by_byte() -> None:
     "fanuc.cnc_clearophis.err.EW_ATTRIB",
 )
 @pytest.mark.covers("fanuc.concept.history_protocol")
+@pytest.mark.covers(
+    "fanuc.cnc_stopophis", "fanuc.cnc_rdophisno", "fanuc.cnc_rdalmhisno", "fanuc.cnc_startophis"
+)
 def test_one_history_is_cleared_alone() -> None:
     control, library, handle = fresh()
 

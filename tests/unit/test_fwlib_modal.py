@@ -269,6 +269,7 @@ def test_words_of_the_axes(number: int, value: int) -> None:
 )  # fmt: skip
 @pytest.mark.covers("fanuc.ODBMDL.aux.flag2")
 @pytest.mark.covers("fanuc.ODBMDL", "fanuc.ODBMDL.aux")
+@pytest.mark.covers("fanuc.cnc_modal")
 def test_what_is_known_about_a_word() -> None:
     library, handle, _ = executing("G1 X-12.5 F812.25\nY3.\nF60 X-20.", "G1")
 

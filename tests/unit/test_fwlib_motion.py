@@ -44,6 +44,7 @@ def buffers(library: Any, handle: int) -> list[list[int]]:
 @pytest.mark.covers("fanuc.cnc_absolute", "fanuc.cnc_finstate")
 @pytest.mark.covers("fanuc.ODBPOS")
 @pytest.mark.covers("fanuc.concept.direct_command")
+@pytest.mark.covers("fanuc.ODBEXEC.EMNT11")
 def test_absolute_motion_of_the_manual() -> None:
     control = PowerMate()
     control.programs.memory.create("O0004", b"O0004\nG0 X10. Y10.\n")
@@ -65,6 +66,8 @@ def test_absolute_motion_of_the_manual() -> None:
 
 @pytest.mark.covers("fanuc.example.cnc_incpoint", "fanuc.cnc_incpoint")
 @pytest.mark.covers("fanuc.concept.direct_command", "fanuc.ODBPOS.unit.linear_mm")
+@pytest.mark.covers("fanuc.nmod.0")
+@pytest.mark.covers("fanuc.cnc_abspoint")
 def test_incremental_motion_of_the_manual() -> None:
     control = PowerMate()
     library, handle = at(control)
@@ -77,6 +80,7 @@ def test_incremental_motion_of_the_manual() -> None:
 
 @pytest.mark.covers("fanuc.example.cnc_refpoint", "fanuc.cnc_refpoint")
 @pytest.mark.covers("fanuc.concept.direct_command")
+@pytest.mark.covers("fanuc.cnc_abspoint")
 def test_reference_return_of_the_manual() -> None:
     control = PowerMate()
     library, handle = at(control)
@@ -120,6 +124,7 @@ def test_units_of_positions(more: dict[str, Any], value: int, axis: str, unit: f
 
 @pytest.mark.covers("fanuc.cnc_finstate", "fanuc.cnc_incpoint")
 @pytest.mark.covers("fanuc.cnc_dwell", "fanuc.concept.direct_command")
+@pytest.mark.covers("fanuc.nmod.1", "fanuc.ODBEXEC.EMNT13", "fanuc.ODBEXEC.EMNT23", "fanuc.ODBFIN.EMNT13")
 def test_a_dwell_keeps_its_path_waiting() -> None:
     control = PowerMate()
     library, handle = at(control)
@@ -136,11 +141,17 @@ def test_a_dwell_keeps_its_path_waiting() -> None:
     control.advance(round(0.03 / cycle_s))
     assert machine(control)[0] > 0
     assert library.cnc_finstate(handle)[1].cdata[2] == 4
+    library.cnc_dwell(handle, 5, 1, 2, idb((3, 300), (2, 700)))  # the longest one counts
+    control.advance(round(0.69 / cycle_s))
+    assert library.cnc_finstate(handle)[1].cdata[4] == 0
+    control.advance(round(0.02 / cycle_s))
+    assert library.cnc_finstate(handle)[1].cdata[4] == 16
 
 
 @pytest.mark.covers("fanuc.cnc_coordre")
 @pytest.mark.covers("fanuc.cnc_absolute")
 @pytest.mark.covers("fanuc.concept.direct_command")
+@pytest.mark.covers("fanuc.cnc_incpoint", "fanuc.cnc_abspoint")
 def test_setting_a_coordinate() -> None:
     control = PowerMate()
     library, handle = at(control)
@@ -153,6 +164,15 @@ def test_setting_a_coordinate() -> None:
     library.cnc_abspoint(handle, 1, 0, 1, 6000, idb((2, 52500)))
     control.advance(2000)
     assert machine(control) == [0, 5500, 0]
+    for value in (-900, 1200):  # each takes the place of the one before
+        library.cnc_coordre(handle, 1, 0, 1, idb((2, value)))
+        control.advance(1)
+        assert library.cnc_absolute(handle, 2, 8)[1].data[0] == value
+    library.cnc_incpoint(handle, 1, 0, 1, 6000, idb((2, -200)))
+    control.advance(500)
+    assert library.cnc_absolute(handle, -1, 28)[1].data[:3] == [0, 1000, -700]
+    control.power_cycle()
+    assert library.cnc_absolute(handle, -1, 28)[1].data[:3] == machine(control) == [0, 5300, 0]
 
 
 # ---------------------------------------------------------------------- buffers and flags
@@ -179,6 +199,7 @@ def test_setting_a_coordinate() -> None:
     "fanuc.ODBEXEC", "fanuc.ODBFIN", "fanuc.cnc_abspoint", "fanuc.cnc_coordre", "fanuc.cnc_dwell"
 )
 @pytest.mark.covers("fanuc.concept.direct_command")
+@pytest.mark.covers("fanuc.nmod.0")
 def test_two_buffers_and_a_completion_flag_per_path(path: int) -> None:
     control = PowerMate()
     library, handle = at(control)
@@ -213,6 +234,7 @@ def test_two_buffers_and_a_completion_flag_per_path(path: int) -> None:
 
 
 @pytest.mark.covers("fanuc.concept.direct_command", "fanuc.cnc_incpoint", "fanuc.cnc_finstate")
+@pytest.mark.covers("fanuc.nmod.1", "fanuc.ODBFIN.EMNT12", "fanuc.ODBFIN.EMNT14", "fanuc.ODBFIN.EMNT15")
 def test_an_axis_belongs_to_the_path_that_moves_it() -> None:
     control = PowerMate()
     library, handle = at(control)
@@ -228,6 +250,8 @@ def test_an_axis_belongs_to_the_path_that_moves_it() -> None:
 
 @pytest.mark.covers("fanuc.cnc_finstate")
 @pytest.mark.covers("fanuc.concept.direct_command")
+@pytest.mark.covers("fanuc.nmod.1")
+@pytest.mark.covers("fanuc.cnc_incpoint")
 def test_a_reset_and_an_alarm_empty_the_buffers() -> None:
     for stop in (PowerMate.reset, PowerMate.emergency_stop, lambda control: control.raise_alarm(85, "X")):
         control = PowerMate()
@@ -247,6 +271,7 @@ def test_a_reset_and_an_alarm_empty_the_buffers() -> None:
 
 @pytest.mark.covers("fanuc.cnc_finstate")
 @pytest.mark.covers("fanuc.concept.direct_command")
+@pytest.mark.covers("fanuc.cnc_incpoint", "fanuc.cnc_dwell")
 def test_a_change_of_mode_lets_commands_go_on() -> None:
     control = PowerMate()
     library, handle = at(control)
@@ -268,6 +293,7 @@ def test_a_change_of_mode_lets_commands_go_on() -> None:
     ("axis", "distance", "alarm"),
     [(2, 9000, (500, "OVER TRAVEL : +Y")), (3, -9000, (501, "OVER TRAVEL : -Z"))],
 )
+@pytest.mark.covers("fanuc.cnc_abspoint", "fanuc.cnc_incpoint", "fanuc.concept.direct_command")
 def test_a_command_past_a_limit_names_it(axis: int, distance: int, alarm: tuple[int, str]) -> None:
     control = PowerMate()
     library, handle = at(control)
@@ -547,6 +573,10 @@ def test_jog_feed_of_one_axis_and_of_all() -> None:
     assert speeds(9, 1) == [-15000, 0, 0]
     give(library, handle, 7, 0)
     assert speeds(9, 1) == [-3000, 0, 0]
+    control.select_mode("T-JOG")
+    assert speeds(1, 3) == [0, 0, 3000]
+    control.select_mode("T-HND")
+    assert speeds(1, 3) == [0, 0, 0]
 
 
 @pytest.mark.covers("fanuc.cnc_opdi.number.4")
@@ -639,6 +669,7 @@ def test_an_operation_signal_is_refused(number: int, value: int, axis: int, code
 )  # fmt: skip
 @pytest.mark.covers("fanuc.cnc_exebufstat", "fanuc.cnc_opdi")
 @pytest.mark.covers("fanuc.concept.program_busy_conditions")
+@pytest.mark.covers("fanuc.cnc_wropnlgnrl")
 def test_a_busy_control_is_asked_again() -> None:
     control, library, handle = started()
     library.cnc_wropnlgnrl(handle, fwlib.IODBGNRL(type=1, sgnal=1))
@@ -659,6 +690,7 @@ def test_a_busy_control_is_asked_again() -> None:
 
 
 @pytest.mark.covers("fanuc.cnc_finstate")
+@pytest.mark.covers("fanuc.cnc_incpoint")
 def test_a_snapshot_holds_signals_buffers_and_memory() -> None:
     control = PowerMate()
     library, handle = at(control)

@@ -253,6 +253,7 @@ def test_memory_protection() -> None:
 @pytest.mark.covers("fanuc.IODBSGNL.feed_hold.0", "fanuc.IODBSGNL.feed_hold.1")
 @pytest.mark.covers("fanuc.cnc_statinfo")
 @pytest.mark.covers("fanuc.IODBSGNL", "fanuc.IODBSGNL.feed_hold")
+@pytest.mark.covers("fanuc.cnc_wropnlsgnl")
 def test_feed_hold_holds_and_keeps_from_starting() -> None:
     control, library, handle = written(feed_hold=0)
     control.programs.memory.create("O0004", b"O0004\nG1 X90. F240\n")
@@ -365,6 +366,7 @@ def test_a_signal_has_a_name_of_eight_characters(bit: int) -> None:
 
 @pytest.mark.covers("fanuc.cnc_rdopnlgnrl", "fanuc.cnc_rdopnlgsname")
 @pytest.mark.covers("fanuc.cnc_statinfo")
+@pytest.mark.covers("fanuc.cnc_wropnlsgnl", "fanuc.cnc_wropnlgnrl", "fanuc.cnc_wropnlgsname")
 def test_the_panel_outlasts_switching_off(tmp_path: Path) -> None:
     control = PowerMate(memory=tmp_path / "memory")
     library, handle = at(control)

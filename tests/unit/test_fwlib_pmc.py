@@ -46,6 +46,7 @@ def read(library: Any, handle: int, kind: int, first: int, last: int | None = No
 @pytest.mark.covers(
     "fanuc.example.pmc_write_word", "fanuc.example.pmc_read_word", "fanuc.pmc_wrpmcrng", "fanuc.pmc_rdpmcrng"
 )
+@pytest.mark.covers("fanuc.pmc.data_type.1")
 def test_word_of_the_manual() -> None:
     library, handle = at(PowerMate())
     buf = fwlib.IODBPMC(type_a=9, type_d=1, datano_s=100, datano_e=101)
@@ -59,6 +60,7 @@ def test_word_of_the_manual() -> None:
 
 @pytest.mark.covers("fanuc.example.pmc_write_bytes", "fanuc.example.pmc_read_bytes")
 @pytest.mark.covers("fanuc.pmc_rdpmcrng")
+@pytest.mark.covers("fanuc.pmc.data_type.0")
 def test_bytes_of_the_manual() -> None:
     control = PowerMate()
     library, handle = at(control)

@@ -63,6 +63,7 @@ def test_an_alarm_of_the_history_says_when_it_came() -> None:
 )
 @pytest.mark.covers("fanuc.cnc_rdophistry")
 @pytest.mark.covers("fanuc.ODBHIS")
+@pytest.mark.covers("fanuc.cnc_rdophisno")
 def test_records_of_the_operation_history_say_what_was_done_and_when() -> None:
     control, handle = attached()
     control.clock.set_now(AT)
@@ -201,6 +202,7 @@ def test_pmc_areas_have_a_letter_and_ends() -> None:
 @covers("IODBPSD.datano", "IODBPSD.type", "IODBPSD.u.ldata", "IODBPSD.u.ldatas")
 @pytest.mark.covers("fanuc.struct.IODBPSD")
 @pytest.mark.covers("fanuc.concept.axis_number", "fanuc.ncparam.1320", "fanuc.ncparam.1321")
+@pytest.mark.covers("fanuc.enum.param_axis.1..m")
 def test_stroke_limits_are_written_and_read_by_number_and_axis() -> None:
     control, handle = attached()
     assert fwlib.cnc_wrparam(handle, 8, psd(1320, 2, ldata=98_765)) == OK
@@ -216,6 +218,7 @@ def test_stroke_limits_are_written_and_read_by_number_and_axis() -> None:
 @pytest.mark.covers("fanuc.cnc_rdparam", "fanuc.cnc_wrparam")
 @pytest.mark.covers("fanuc.struct.IODBPSD")
 @pytest.mark.covers("fanuc.concept.c_types", "fanuc.concept.bit_param_rmw")
+@pytest.mark.covers("fanuc.paramtype.bit", "fanuc.paramtype.word")
 def test_parameters_of_bits_and_words_act() -> None:
     control, handle = attached()
     assert fwlib.cnc_wrparam(handle, 5, psd(3202, 0, cdata=0x11)) == OK
@@ -235,6 +238,9 @@ def test_parameters_of_bits_and_words_act() -> None:
 @pytest.mark.covers("fanuc.cnc_rdparar")
 @pytest.mark.covers("fanuc.struct.ODBPARAIF")
 @pytest.mark.covers("fanuc.concept.param_record_stream")
+@pytest.mark.covers(
+    "fanuc.enum.prm_attr.0", "fanuc.enum.prm_attr.1", "fanuc.enum.prm_attr.2", "fanuc.enum.prm_attr.3"
+)
 def test_types_of_parameters_are_the_bytes_of_their_records(number: int, size: int) -> None:
     control, handle = attached()
     code, info = fwlib.cnc_rdparainfo(handle, number, 1)
@@ -265,6 +271,7 @@ def test_types_of_parameters_are_the_bytes_of_their_records(number: int, size: i
     "fanuc.diag.kind.2word",
     "fanuc.diag.kind.2word_axis",
 )
+@pytest.mark.covers("fanuc.diag.axis.0", "fanuc.diag.axis.-1")
 def test_diagnosis_data_of_a_control_that_moves() -> None:
     control, handle = attached()
     registered(control, O7="\nG1X20.Y-10.F3000\nM30\n")
@@ -437,6 +444,9 @@ def test_an_option_that_is_not_fitted_is_refused() -> None:
 @pytest.mark.parametrize("axes", [1, 2, 3, 4, 5, 6])
 @pytest.mark.covers("fanuc.cnc_sysconfig")
 @pytest.mark.covers("fanuc.ODBSYSC")
+@pytest.mark.covers(
+    "fanuc.ODBSYSC.sv3min.0", "fanuc.ODBSYSC.sv3min.-1", "fanuc.ODBSYSC.sv5min.0", "fanuc.ODBSYSC.sv5min.-1"
+)
 def test_servo_modules_are_there_for_every_pair_of_axes(axes: int) -> None:
     found = fwlib.cnc_sysconfig(attached(axes=axes)[1])[1]
     assert (found.sv3min, found.sv5min) == (0 if axes > 2 else -1, 0 if axes > 4 else -1)
