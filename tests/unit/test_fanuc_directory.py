@@ -383,6 +383,9 @@ def test_a_start_begins_at_the_sequence_number_that_was_sought() -> None:
     assert fwlib.cnc_rewind(handle) == OK
     assert fwlib.cnc_rdexecprog(handle, 3)[3] == b"O00"
     assert fwlib.cnc_seqsrch(handle, 30) == OK
+    assert fwlib.cnc_seqsrch(handle, 10) == OK  # from the head, wherever the cursor was
+    assert fwlib.cnc_rdexecprog(handle, 3)[3] == b"N10"
+    assert fwlib.cnc_seqsrch(handle, 30) == OK
     control.parameters.set(1422, 6000)
     control.programs.register(7, "O0007\nN10 G1 X10. F6000\nN20 Y5.\nN30 G1 X2.5 F6000\nM30\n")
     control.cycle_start()
@@ -462,3 +465,11 @@ def test_searches_of_the_cursor_that_are_refused() -> None:
     control.advance(100)
     assert fwlib.cnc_seqsrch(handle, 10) == EW.EW_REJECT
     assert fwlib.cnc_rewind(handle) == EW.EW_REJECT
+    control.feed_hold()
+    control.advance(300)
+    assert fwlib.cnc_seqsrch(handle, 10) == EW.EW_REJECT
+    assert fwlib.cnc_rewind(handle) == EW.EW_REJECT
+    control.reset()
+    control.advance(300)
+    assert fwlib.cnc_seqsrch(handle, 10) == OK
+    assert fwlib.cnc_rewind(handle) == OK

@@ -94,6 +94,7 @@ def test_histories_are_read_while_sampling_is_stopped() -> None:
     library.cnc_stopophis(handle)
     assert codes() == [EW.EW_OK] * 4
     control.raise_alarm(700)
+    control.history.press_key(0x41)
     assert (library.cnc_rdophisno(handle)[1], library.cnc_rdalmhisno(handle)[1]) == (2, 2)
     library.cnc_startophis(handle)
     assert codes() == [EW.EW_FUNC] * 4
@@ -101,6 +102,13 @@ def test_histories_are_read_while_sampling_is_stopped() -> None:
     library.cnc_stopophis(handle)
     assert (library.cnc_rdophisno(handle)[1], library.cnc_rdalmhisno(handle)[1]) == (3, 3)
     assert [each.alm_no for each in library.cnc_rdalmhistry(handle, 1, 3, 150)[1].alm_his] == [85, 417, 5011]
+    library.cnc_startophis(handle)
+    for number in range(401, 417):
+        control.raise_alarm(number)
+        control.history.press_key(number - 400)
+    library.cnc_stopophis(handle)
+    assert (library.cnc_rdophisno(handle)[1], library.cnc_rdalmhisno(handle)[1]) == (3 + 2 * 16, 3 + 16)
+    assert library.cnc_rdalmhistry(handle, 19, 19, 54)[1].alm_his[0].alm_no == 416
 
 
 # ---------------------------------------------------------------------- operation records
@@ -162,6 +170,16 @@ def test_the_change_of_a_signal(letter: str, number: int) -> None:
         else:
             control.pmc.write(letter, address, bytes([value]))
 
+    if letter == "Y":  # bit 7 is a bit as any other
+        change(0x92)
+        change(0x6C)
+        records = operations(library, handle)
+        assert records == [
+            bytes((1, 0, number, 0, 0x92, 0, 44, 0)),
+            bytes((1, 0, number, 0x92, 0x6C, 0, 44, 0)),
+        ]
+        change(0)
+        library.cnc_clearophis(handle, 0)
     change(0x12)
     change(0x28)
     change(0x29)

@@ -282,6 +282,9 @@ def test_what_is_known_about_a_word() -> None:
     assert flags(103, 1) == (0x40 | 5, 2)
     assert flags(122, 1) == (0x20 | 3, 0)
     assert flags(103, 2) == (0x80 | 2, 0)
+    library, handle, _ = executing("G1 X-12345.678 F1.23456", "G1")  # 8 digits, 5 decimals
+    assert flags(122, 0) == (0x80 | 0x20 | 8, 0)
+    assert flags(103, 0) == (0x80 | 0x40 | 6, 5)
 
 
 @pytest.mark.covers("fanuc.cnc_modal")
@@ -298,16 +301,16 @@ def test_digits_of_m_are_those_of_the_parameter() -> None:
 @pytest.mark.parametrize(
     ("kind", "block", "code"),
     [
-        pytest.param(21, 0, "EW_NUMBER", marks=pytest.mark.covers("fanuc.cnc_modal.err.EW_NUMBER")),
+        (21, 0, "EW_NUMBER"),
         (99, 0, "EW_NUMBER"),
         (127, 1, "EW_NUMBER"),
         (206, 0, "EW_NUMBER"),
         (-4, 0, "EW_NUMBER"),
-        pytest.param(3, 3, "EW_ATTRIB", marks=pytest.mark.covers("fanuc.cnc_modal.err.EW_ATTRIB")),
+        (3, 3, "EW_ATTRIB"),
         (100, -1, "EW_ATTRIB"),
     ],
 )
-@pytest.mark.covers("fanuc.cnc_modal")
+@pytest.mark.covers("fanuc.cnc_modal", "fanuc.cnc_modal.err.EW_ATTRIB", "fanuc.cnc_modal.err.EW_NUMBER")
 def test_modal_data_are_refused(kind: int, block: int, code: str) -> None:
     control = PowerMate()
     session = fwlib.Session()

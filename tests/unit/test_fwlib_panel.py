@@ -109,10 +109,11 @@ def test_unused_bits_select_nothing() -> None:
 @pytest.mark.parametrize(
     ("name", "value"),
     [
-        pytest.param("rpd_ovrd", 4, marks=pytest.mark.covers("fanuc.cnc_wropnlsgnl.err.EW_DATA")),
-        ("jog_ovrd", 25), ("feed_ovrd", 21), ("mode", 6), ("mode", -1), ("blck_del", 2), ("feed_hold", -1),
+        ("rpd_ovrd", 4), ("rpd_ovrd", -1), ("jog_ovrd", 25), ("feed_ovrd", 21), ("mode", 6), ("mode", -1),
+        ("blck_del", 2), ("sngl_blck", 2), ("machn_lock", -2), ("dry_run", 2), ("mem_prtct", 3), ("feed_hold", -1),
     ],
 )  # fmt: skip
+@pytest.mark.covers("fanuc.cnc_wropnlsgnl.err.EW_DATA")
 def test_a_bad_value_writes_nothing(name: str, value: int) -> None:
     control, library, handle = written(feed_ovrd=7, dry_run=1)
     _, before = library.cnc_rdopnlsgnl(handle, ALL)
@@ -262,6 +263,10 @@ def test_feed_hold_holds_and_keeps_from_starting() -> None:
     control.advance(100)
     library.cnc_wropnlsgnl(handle, fwlib.IODBSGNL(type=1 << 12, feed_hold=1))
     control.advance(100)
+    assert library.cnc_statinfo(handle)[1].run == 2
+    control.signals.give(7, 4)
+    control.signals.give(7, 0)
+    control.advance(10)
     assert library.cnc_statinfo(handle)[1].run == 2
     library.cnc_wropnlsgnl(handle, fwlib.IODBSGNL(type=1 << 12, feed_hold=0))
     control.signals.give(7, 4)
