@@ -175,6 +175,10 @@ def test_example_actual_feed() -> None:
     control.control.set_overrides(feed=0.5)
     control.advance(1000)
     assert fwlib.cnc_actf(handle)[1].data == 600
+    for percent, shown in ((0.33, 396), (0.4996, 600), (0.5003, 600)):  # the nearest whole number
+        control.control.set_overrides(feed=percent)
+        control.advance(400)
+        assert fwlib.cnc_actf(handle)[1].data == shown
     control.feed_hold()
     control.advance(1000)
     assert fwlib.cnc_actf(handle)[1].data == 0

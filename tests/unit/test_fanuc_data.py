@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import struct
-from collections.abc import Iterable
 from typing import Any
 
 import pytest
@@ -604,17 +603,24 @@ def attributes(number: int) -> int:
     return int(info.info[0].prm_type)
 
 
-BITS: dict[str, tuple[int, int, Iterable[int], Iterable[int]]] = {
-    # name: shift, mask, numbers that have it, numbers that have not
-    "bit2": (2, 1, (1320, 1020, 1006), (6711, 3201)),
-    "bit3": (3, 1, (), (6711, 6710, 1320)),
-    "bit4": (4, 1, (0, 12, 6711, 6750), (1320, 6710)),
-    "bit5": (5, 1, (1010,), (1020, 6711)),
-    "bit6": (6, 1, (1006, 1001, 1004), (1320, 6711)),
-    "bit7": (7, 1, (3210,), (3211, 6711)),
-    "bit8": (8, 1, (), (6711, 1320)),
-    "bit9_15": (9, 0x7F, (), tuple(parameter_rows())[::9]),
+# fmt: off
+BITS: dict[str, tuple[int, int, tuple[int, ...]]] = {
+    # name: shift, mask, all numbers that have it
+    "bit2": (2, 1, (
+        12, 1005, 1006, 1008, 1020, 1022, 1023, *range(1220, 1227), 1240, 1241, 1260, 1320, 1321, 1420, 1421, 1423,
+        1424, 1425, 1430, 1620, 1622, 1624, 1825, 1826, 1828, 1829, 1850, 1851, 2020, 2086, 8010, 8022,
+    )),
+    "bit3": (3, 1, ()),
+    "bit4": (4, 1, (0, 1, 12, 20, 100, 6711, 6712, 6713, *range(6750, 6759))),
+    "bit5": (5, 1, (1010,)),
+    "bit6": (6, 1, (
+        1001, 1004, 1006, 1008, 1010, 1020, 1022, 1023, 1240, 1241, 1260, 1850, 2020, 2086,
+    )),
+    "bit7": (7, 1, (3210,)),
+    "bit8": (8, 1, ()),
+    "bit9_15": (9, 0x7F, ()),
 }
+# fmt: on
 
 
 @pytest.mark.parametrize(
@@ -624,11 +630,11 @@ BITS: dict[str, tuple[int, int, Iterable[int], Iterable[int]]] = {
 @pytest.mark.covers("fanuc.concept.setting_subset", "fanuc.concept.sparse_parameters")
 @pytest.mark.covers("fanuc.ODBPARAIF.prm_type.bit0_1")
 def test_attribute_bits(name: str) -> None:
-    shift, mask, have, have_not = BITS[name]
-    for number in have:
-        assert attributes(number) >> shift & mask == 1
-    for number in have_not:
-        assert attributes(number) >> shift & mask == 0
+    shift, mask, have = BITS[name]
+    _, handle = attached()
+    _, info = fwlib.cnc_rdparainfo(handle, 0, 65_535)
+    found = {each.prm_no: each.prm_type >> shift & mask for each in info.info}
+    assert found == {number: int(number in have) for number in parameter_rows()}
     flag = {"bit3": Attribute.UNSIGNED, "bit8": Attribute.SPINDLE}.get(name)
     if flag is not None:
         assert int(flag) == 1 << shift

@@ -580,6 +580,8 @@ def test_in_other_modes_than_edit_and_mem_the_op_signal_does_not_matter() -> Non
     [
         (3202, 1, (8000, 8999), (7999, 9000)),
         (3202, 16, (9000, 9999), (8999, 7)),
+        (3202, 0xEF, (8001, 8500), (7999, 9999)),  # the other bits say nothing of programs
+        (3202, 0xFE, (9001, 9998), (8000, 1)),
         (3210, 55, (9000, 9001), (8999, 1)),
     ],
 )

@@ -270,7 +270,7 @@ def test_figures_of_tool_offsets_and_macro_variables(
 def test_the_increment_system_is_a_parameter() -> None:
     control = PowerMate()
     library, handle = at(control)
-    for bits, decimals in ((1, 2), (2, 4), (0, 3)):
+    for bits, decimals in ((1, 2), (2, 4), (0, 3), (0x80 | 2, 4), (0x40 | 1, 2), (0xFC, 3)):
         control.parameters.set(1004, bits)
         control.power_cycle()
         assert library.cnc_getfigure(handle, 0)[2][0] == decimals

@@ -136,6 +136,27 @@ def monitored(library: Any, handle: int, *entries: tuple[int, int, int, int]) ->
     return EW(library.cnc_wrhissgnl(handle, sig))
 
 
+@pytest.mark.covers(*(f"fanuc.IODBSIG.sig_name.{number}" for number in (1, 2, 3)))
+@pytest.mark.covers(*(f"fanuc.ODBHIS.sig_name.{number}" for number in (1, 2, 3)), "fanuc.ODBHIS.sig_no")
+@pytest.mark.covers("fanuc.cnc_wrhissgnl", "fanuc.IODBSIG.data.mask_pat", "fanuc.ODBHIS.rec_sgn")
+def test_signals_beyond_1000_and_several_of_one_letter_are_noted() -> None:
+    control, library, handle = fresh()
+    chosen = ((1, 1, 1003, 0x0F), (2, 2, 1200, 0x80), (3, 3, 1063, 0xFF), (4, 1, 127, 0x01))
+    assert monitored(library, handle, *chosen) is EW.EW_OK
+    control.pmc.set_input(1003, 0x71)
+    control.pmc.set_input(1003, 0xF1)  # outside the mask
+    control.pmc.set_input(127, 0x83)
+    control.pmc.set_input(3, 0xFF)  # not chosen
+    control.pmc.write("G", 1200, b"\xc4")
+    control.pmc.write("Y", 1063, b"\x06")
+    assert operations(library, handle) == [
+        bytes((1, 0, 1, 0, 0x71, 0, 0xEB, 3)),
+        bytes((1, 0, 1, 0, 0x83, 0, 127, 0)),
+        bytes((1, 0, 2, 0, 0xC4, 0, 0xB0, 4)),
+        bytes((1, 0, 3, 0, 0x06, 0, 0x27, 4)),
+    ]
+
+
 @pytest.mark.parametrize(
     ("letter", "number"),
     [

@@ -403,7 +403,7 @@ def test_parameters_allow_direct_commands() -> None:
     assert library.cnc_incpoint(handle, 1, 0, 2, 500, idb((1, 5), (2, 5)))[0] is EW.EW_PARAM
     assert library.cnc_refpoint(handle, 1, 0, 2)[0] is EW.EW_PARAM
     assert library.cnc_refpoint(handle, 1, 0, 1)[0] is EW.EW_OK
-    control.parameters.set(8003, 0)
+    control.parameters.set(8003, 0x7F)  # bit 7 alone allows them
     assert library.cnc_refpoint(handle, 1, 0, 1)[0] is EW.EW_PARAM
     assert library.cnc_exebufstat(handle)[0] is EW.EW_PARAM
     assert library.cnc_finstate(handle)[0] is EW.EW_PARAM
@@ -571,6 +571,7 @@ def test_jog_feed_of_one_axis_and_of_all() -> None:
     assert [speeds(1, 2), speeds(9, 3), speeds(1, 0)] == [[0, 3000, 0], [0, 0, -3000], [3000] * 3]
     give(library, handle, 7, 1)
     assert speeds(9, 1) == [-15000, 0, 0]
+    assert [speeds(1, 1), speeds(1, 3)] == [[15000, 0, 0], [0, 0, 15000]]
     give(library, handle, 7, 0)
     assert speeds(9, 1) == [-3000, 0, 0]
     control.select_mode("T-JOG")
