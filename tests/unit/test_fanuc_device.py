@@ -19,7 +19,7 @@ from polycnc.controllers.fanuc import PowerMate, PowerMateMode, fwlib
 from polycnc.controllers.fanuc.fwlib import EW
 from polycnc.errors import UsageError
 from support.often import share
-from support.power_mate import OK, attached, moved, registered, running
+from support.power_mate import OK, attached, moved, psd, registered, running
 
 MODES = {
     "MDI": (0, Mode.MDI), "MEM": (1, Mode.AUTO), "EDIT": (3, Mode.EDIT), "HND": (4, Mode.HANDLE), "JOG": (5, Mode.JOG),
@@ -236,6 +236,24 @@ def test_parameters_act_at_once(
     control, _ = attached()
     control.parameters.set(number, value, axis)
     assert measured(control) == pytest.approx(after, rel=0.06)
+
+
+@pytest.mark.covers("fanuc.cnc_srvdelay", "fanuc.cnc_rdloopgain", "fanuc.cnc_wrparam")
+def test_gain_and_deviation_limit_act_at_once() -> None:
+    control, handle = attached(servo=True, axes=2)
+    assert fwlib.cnc_wrparam(handle, 6, psd(1825, 1, idata=6000)) == OK  # 60/s
+    assert fwlib.cnc_rdloopgain(handle)[1][:2] == [6000, 3000]
+    registered(control, O7="\nG1 X60. Y60. F2400\nM30\n", O8="\nG1 X0 F2400\nM30\n")
+    running(control, 7)
+    control.advance(800)
+    rate = 2400 / 60 / 2**0.5 * 1000  # increments a second along each axis
+    delays = fwlib.cnc_srvdelay(handle, -1, 12)[1].data[:2]
+    assert delays == [pytest.approx(rate / 60, rel=0.1), pytest.approx(rate / 30, rel=0.1)]
+    control.advance(5000)
+    assert fwlib.cnc_wrparam(handle, 8, psd(1828, 1, ldata=300)) == OK  # 0.3 mm, where 0.67 come
+    running(control, 8)
+    control.advance(500)
+    assert [(each.number, each.axis) for each in control.status().alarms] == [(411, "X")]
 
 
 def test_parameters_that_are_written_while_a_program_runs_act_with_the_next() -> None:

@@ -439,11 +439,13 @@ def test_addresses_that_can_be_watched(letter: str, good: tuple[int, ...], bad: 
 
 @pytest.mark.covers("fanuc.cnc_rdhissgnl", "fanuc.cnc_wrhissgnl")
 @pytest.mark.covers("fanuc.cnc_wrhissgnl.err.EW_ATTRIB")
+@pytest.mark.covers("fanuc.IODBSIG.data.ent_no")
 def test_a_wrong_table_is_refused_whole() -> None:
     _, library, handle = fresh()
     for count in (0, 21, -1):
         assert library.cnc_wrhissgnl(handle, fwlib.IODBSIG(type=count)) is EW.EW_ATTRIB
     assert monitored(library, handle, (4, 2, 9, 1), (21, 2, 9, 1)) is EW.EW_DATA
+    assert monitored(library, handle, (4, 2, 9, 1), (0, 2, 9, 1)) is EW.EW_DATA
     assert monitored(library, handle, (4, 2, 9, 1), (5, 5, 9, 1)) is EW.EW_DATA
     assert all(each.sig_name == 0 for each in library.cnc_rdhissgnl(handle)[1].data)
 

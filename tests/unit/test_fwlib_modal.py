@@ -57,6 +57,7 @@ def test_program_of_the_manual() -> None:
 
 @pytest.mark.parametrize("inch", [False, True])
 @pytest.mark.covers("fanuc.param.0000_2")
+@pytest.mark.covers("fanuc.modal.G.5.0", "fanuc.modal.G.5.1")
 def test_the_unit_at_power_on_is_that_of_the_setting(inch: bool) -> None:
     library, handle, control = executing("G1 X1. F40.", "G1", inch_input=inch)
     assert g(library, handle, 5, 0) == (0 if inch else 1)
@@ -101,6 +102,16 @@ def test_a_code_has_its_number_and_stays_in_force(group: int, value: int, text: 
     assert g(library, handle, group, 1) == value
     _, every = library.cnc_modal(handle, -1, 0)
     assert every.modal.g_rdata[group] == value | 0x80
+    line = next(each for each in text.split("\n") if each.startswith(words))
+    for begin, block in (("G4 P90", 2), ("G4 P80", 1)):  # in a block that comes next
+        library, handle, _ = executing(f"G4 P90\nG4 P80\n{line}\n{extra}", begin)
+        before = g(library, handle, group)
+        assert before & 0x80 == 0
+        assert g(library, handle, group, block) == value | 0x80
+        if block == 2:
+            assert g(library, handle, group, 1) == before
+        else:
+            assert g(library, handle, group, 2) == value
 
 
 def _executes(control: PowerMate, block: str) -> bool:
@@ -281,10 +292,17 @@ def test_what_is_known_about_a_word() -> None:
     assert flags(122, 0) == (0x80 | 0x20 | 3, 0)
     assert flags(103, 1) == (0x40 | 5, 2)
     assert flags(122, 1) == (0x20 | 3, 0)
+    assert (flags(123, 0), flags(123, 1)) == ((0, 0), (0x80 | 1, 0))
     assert flags(103, 2) == (0x80 | 2, 0)
     library, handle, _ = executing("G1 X-12345.678 F1.23456", "G1")  # 8 digits, 5 decimals
     assert flags(122, 0) == (0x80 | 0x20 | 8, 0)
     assert flags(103, 0) == (0x80 | 0x40 | 6, 5)
+    library, handle, _ = executing("G1 X12.5 Y-7. Z-.25 F812.25", "G1")
+    assert [flags(address, 0)[0] for address in (122, 123, 124)] == [
+        0x80 | 3,
+        0x80 | 0x20 | 1,
+        0x80 | 0x20 | 2,
+    ]
 
 
 @pytest.mark.covers("fanuc.cnc_modal")

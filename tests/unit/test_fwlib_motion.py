@@ -487,6 +487,12 @@ def test_start_hold_and_reset() -> None:
     assert library.cnc_statinfo(handle)[1].emergency == 2
     give(library, handle, 3, 0)
     assert library.cnc_statinfo(handle)[1].emergency == 0
+    give(library, handle, 3, 1)
+    give(library, handle, 8, 1)
+    give(library, handle, 8, 0)
+    assert state(control) is RunState.ACTIVE
+    give(library, handle, 3, 0)  # it resets when it comes, not when it goes
+    assert state(control) is RunState.ACTIVE
 
 
 @pytest.mark.covers("fanuc.cnc_opdi.number.1", "fanuc.cnc_opdi.sig1.cdata.0", "fanuc.cnc_opdi.sig1.cdata.1")
@@ -574,6 +580,7 @@ def test_jog_feed_of_one_axis_and_of_all() -> None:
     assert [speeds(1, 1), speeds(1, 3)] == [[15000, 0, 0], [0, 0, 15000]]
     give(library, handle, 7, 0)
     assert speeds(9, 1) == [-3000, 0, 0]
+    assert speeds(9, 0) == [-3000] * 3
     control.select_mode("T-JOG")
     assert speeds(1, 3) == [0, 0, 3000]
     control.select_mode("T-HND")
@@ -599,6 +606,11 @@ def test_an_axis_whose_servo_is_off_does_not_move(bit: int) -> None:
     give(library, handle, 4, 0)
     control.advance(500)
     assert machine(control) == [500 if k == bit else 0 for k in range(6)]
+    control.signals.give(100, 0x3F)  # all are jogged
+    control.advance(200)
+    give(library, handle, 4, 1 << bit)
+    control.advance(300)
+    assert [each.velocity == 0.0 for each in control.status().axes.values()][bit]
 
 
 @pytest.mark.covers("fanuc.cnc_opdi.number.12")
@@ -641,6 +653,8 @@ def test_torque_override_limits_the_current() -> None:
         *(pytest.param(number, 1, 0, "EW_NUMBER", marks=pytest.mark.covers("fanuc.cnc_opdi.number.undefined"))
           for number in (0, 5, 6, 11, 16, -1)),
         (13, 9, 7, "EW_ATTRIB"),
+        (13, 9, 4, "EW_ATTRIB"),  # the machine has three axes
+        (14, 1, 4, "EW_ATTRIB"),
         (14, 1, -1, "EW_ATTRIB"),
         pytest.param(4, 0x40, 0, "EW_DATA", marks=pytest.mark.covers("fanuc.cnc_opdi.sig4.cdata.bit6")),
         pytest.param(4, 0x81, 0, "EW_DATA", marks=pytest.mark.covers("fanuc.cnc_opdi.sig4.cdata.bit7")),
@@ -656,6 +670,7 @@ def test_torque_override_limits_the_current() -> None:
     ],
 )  # fmt: skip
 @pytest.mark.covers("fanuc.cnc_opdi")
+@pytest.mark.covers("fanuc.cnc_opdi.sig13.axis", "fanuc.cnc_opdi.sig14.axis")
 def test_an_operation_signal_is_refused(number: int, value: int, axis: int, code: str) -> None:
     control, library, handle = started()
     before = control.pmc.read("G", 0, 255)

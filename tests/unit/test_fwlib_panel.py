@@ -134,8 +134,9 @@ def test_a_bad_value_writes_nothing(name: str, value: int) -> None:
 @pytest.mark.covers("fanuc.cnc_statinfo")
 @pytest.mark.covers("fanuc.IODBSGNL", "fanuc.IODBSGNL.mode")
 def test_mode(value: int, aut: int) -> None:
-    _, library, handle = written(mode=value)
+    control, library, handle = written(mode=value)
     assert library.cnc_statinfo(handle)[1].aut == aut
+    assert control.pmc.read("F", 73, 73)[0] == (0, 1, 3, 4, 5, 0x15)[value]
     assert library.cnc_rdopnlsgnl(handle, 1)[1].mode == value
 
 
@@ -155,6 +156,7 @@ def test_rapid_override(value: int, mm_min: int) -> None:
     control.cycle_start()
     control.advance(300)
     assert round(control.status().axes["X"].velocity * 60.0) == mm_min
+    assert control.pmc.read("F", 76, 76) == bytes([value << 4])
 
 
 JOG_PERCENT = (
@@ -177,6 +179,8 @@ def test_jog_override(value: int, percent: float) -> None:
     control.signals.give(100, 4)
     control.advance(400)
     assert control.status().axes["Z"].velocity * 60.0 == pytest.approx(3000.0 * percent / 100.0, abs=1e-6)
+    counts = int.from_bytes(control.pmc.read("F", 79, 80), "little")  # as the PMC sees it: 0.01 %, inverted
+    assert 0xFFFF - counts == round(percent * 100)
 
 
 @pytest.mark.parametrize(
@@ -273,6 +277,38 @@ def test_feed_hold_holds_and_keeps_from_starting() -> None:
     control.signals.give(7, 0)
     control.advance(10)
     assert control.control.channels[0].run_state is RunState.ACTIVE
+
+
+OTHERS = ("blck_del", "sngl_blck", "machn_lock", "dry_run", "mem_prtct", "feed_hold")
+
+
+@pytest.mark.parametrize("value", [0, 1])
+@pytest.mark.parametrize(
+    "name",
+    [
+        pytest.param(name, marks=pytest.mark.covers(f"fanuc.IODBSGNL.{name}.0", f"fanuc.IODBSGNL.{name}.1"))
+        for name in OTHERS
+    ],
+)
+@pytest.mark.covers("fanuc.cnc_wropnlsgnl", "fanuc.IODBSGNL")
+def test_a_switch_of_the_panel_is_that_switch_alone(name: str, value: int) -> None:
+    """F75 has BDTO, SBKO, MLKO, DRNO, KEYO and SPO in bits 2 to 7."""
+    control, library, handle = written(**dict.fromkeys(OTHERS, 1 - value))
+    bits = {each: bit for bit, (each, _) in SIGNALS.items()}
+    sgnl = fwlib.IODBSGNL(type=1 << bits[name], **dict.fromkeys(OTHERS, value))
+    assert library.cnc_wropnlsgnl(handle, sgnl) == 0
+    switches = control.control.switches
+    found = {
+        "blck_del": 1 in switches.block_delete,
+        "sngl_blck": switches.single_block,
+        "machn_lock": switches.machine_lock,
+        "dry_run": switches.dry_run,
+        "mem_prtct": control.state.protection_keys == {1, 2, 3, 4},
+        "feed_hold": control.signals.state.hold_is_on,
+    }
+    assert found == {each: bool(value if each == name else 1 - value) for each in OTHERS}
+    bit = 4 << OTHERS.index(name)
+    assert control.pmc.read("F", 75, 75)[0] == (bit if value else 0xFC & ~bit)
 
 
 # ---------------------------------------------------------------------- general-purpose signals and names
@@ -390,6 +426,14 @@ def test_the_panel_outlasts_switching_off(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(("mode", "byte"), [(0, 0), (1, 1), (2, 3), (3, 4), (4, 5), (5, 0x15)])
+@pytest.mark.covers(
+    "fanuc.IODBSGNL.mode.0",
+    "fanuc.IODBSGNL.mode.1",
+    "fanuc.IODBSGNL.mode.2",
+    "fanuc.IODBSGNL.mode.3",
+    "fanuc.IODBSGNL.mode.4",
+    "fanuc.IODBSGNL.mode.5",
+)
 def test_the_mode_of_the_panel_is_shown_to_the_pmc_by_its_signals(mode: int, byte: int) -> None:
     """MD1O, MD2O, MD4O are bits 0 to 2 of F73, ZRNO is bit 4: MEM 1, EDIT 3, HND 4, JOG 5, REF 5 with ZRNO."""
     control, _, _ = written(mode=mode)

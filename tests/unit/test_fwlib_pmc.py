@@ -104,6 +104,8 @@ def test_an_area_ends_where_the_manual_says(letter: str, first: int, last: int) 
     assert library.pmc_rdpmcrng(handle, kind, 0, first - 1, first, 10)[0] is EW.EW_NUMBER
     protected = letter in "FX" or first == 9000
     assert write(library, handle, kind, first, 1) is (EW.EW_PROT if protected else EW.EW_OK)
+    if not protected:
+        assert (read(library, handle, kind, first), read(library, handle, kind, last)) == ([1], [0])
     assert write(library, handle, kind, last, 1) is (EW.EW_PROT if protected or letter == "K" else EW.EW_OK)
 
 

@@ -230,6 +230,11 @@ def waiting(cycles: int = 3) -> PowerMate:
     return running("M8\nG1 X50. F600", cycles, script={(Function.M, 8): Answer(after_s=None)})
 
 
+def waiting_for(word: str, function: Function) -> PowerMate:
+    number = int(word[1:])
+    return running(f"{word}\nG1 X50. F600", 3, script={(function, number): Answer(after_s=None)})
+
+
 def held_while_a_function_waits() -> PowerMate:
     control = waiting()
     control.feed_hold()
@@ -279,6 +284,7 @@ STATES: dict[str, tuple[Callable[[], PowerMate], int, int, int]] = {
     "after a function": (lambda: running("M8\nG4 P3000", 40), 4, 3, 0),
     "at a function": (waiting, 4, 0, 1),
     "held at a function": (held_while_a_function_waits, 2, 0, 1),
+    "at a speed": (lambda: waiting_for("S500", Function.S), 4, 0, 1),
     "stopped by M1": (stopped_by_choice, 1, 0, 0),
     "stopped after a block": (stopped_after_a_block, 1, 0, 0),
     "held in a dwell": (held_in_a_dwell, 2, 0, 0),
@@ -474,6 +480,21 @@ def test_edit_state() -> None:
     control.transfer.take(b"%\nO0005\n")
     states.append(library.cnc_statinfo(handle)[1].edit)
     assert states == [0, 1, 6, 5, 4]
+    control.transfer = None
+    control.select_mode("EDIT")
+    states = []
+    for piece in ("", "%", "%\nO0009\nM30", "\n%"):
+        if not piece:
+            assert library.cnc_dwnstart(handle) == 0
+        else:
+            assert library.cnc_download(handle, piece, len(piece)) == 0
+        states.append(library.cnc_statinfo(handle)[1].edit)
+    assert library.cnc_dwnend(handle) == 0
+    states.append(library.cnc_statinfo(handle)[1].edit)
+    assert states == [6, 6, 4, 4, 0]
+    control.select_mode("EDIT")
+    with control.programs.edit(9):
+        assert library.cnc_statinfo(handle)[1].edit == 1
 
 
 # ---------------------------------------------------------------------- cnc_alarm, cnc_rdalminfo
@@ -545,6 +566,29 @@ def test_unused_bits_are_never_set_and_select_nothing() -> None:
     for bit in UNUSED:
         assert library.cnc_rdalminfo(handle, 0, 1 << bit, 6)[0] is fwlib.EW.EW_ATTRIB
     assert library.cnc_rdalminfo(handle, 0, 0, 6)[0] is fwlib.EW.EW_ATTRIB
+
+
+@pytest.mark.covers(*(f"fanuc.ODBALM.data.bit{bit}" for bit in (3, 4, 6)), "fanuc.cnc_alarm")
+@pytest.mark.covers("fanuc.cnc_rdalminfo", "fanuc.ODBALM.data", "fanuc.ALMINFO.alm.axis")
+def test_what_goes_wrong_sets_the_bit_of_its_group() -> None:
+    limit = PowerMate()
+    limit.parameters.set(1320, 4000, 2)
+    servo = PowerMate(servo=True)
+    servo.parameters.set(1828, 200, 1)
+    found = []
+    for control, text in (
+        (limit, "G1 Y9. F600"),
+        (servo, "G1 X50. F6000"),
+        (PowerMate(), "G1 X="),
+    ):
+        put(control, 7, text)
+        control.cycle_start()
+        control.advance(2000)
+        library, handle = at(control)
+        bits = library.cnc_alarm(handle)[1].data
+        alarm = library.cnc_rdalminfo(handle, 0, bits, 6)[1].u.alm1.alm[0]
+        found.append((bits, alarm.axis))
+    assert found == [(1 << 4, 2), (1 << 6, 1), (1 << 3, 0)]
 
 
 LABELS = [
