@@ -409,6 +409,15 @@ def test_the_table_has_twenty_entries_and_keeps_those_not_named() -> None:
     assert found == [(k, *{3: (1, 12, 0x7F), 20: (4, 7, 0xFF)}.get(k, (0, 0, 0))) for k in range(1, 21)]
     monitored(library, handle, (3, 0, 12, 0x7F))
     assert library.cnc_rdhissgnl(handle)[1].data[2].sig_name == 0
+    full = [(k, 1 + k % 4, 5 + k, 0x80 + k) for k in range(1, 21)]
+    assert monitored(library, handle, *full) is EW.EW_OK  # 20 are as many as there can be
+    code, sig = library.cnc_rdhissgnl(handle)
+    assert [(each.ent_no, each.sig_name, each.sig_no, each.mask_pat) for each in sig.data] == full
+    some = fwlib.IODBSIG(type=1)
+    for each, entry in zip(some.data, (6, 9), strict=False):
+        each.ent_no = entry
+    assert library.cnc_wrhissgnl(handle, some) == 0  # one is taken from the table
+    assert [each.ent_no for each in library.cnc_rdhissgnl(handle)[1].data if not each.sig_name] == [6]
 
 
 @pytest.mark.covers("fanuc.cnc_rdhissgnl")

@@ -518,9 +518,10 @@ def test_emergency_stop_is_active_low() -> None:
 def test_mode_select(value: int, mode: str) -> None:
     control = PowerMate()
     library, handle = at(control)
-    control.select_mode("T-JOG")
-    assert give(library, handle, 9, value) == 0
-    assert control.mode is PowerMateMode[mode]
+    for before in ("T-JOG", "RMT", "REF", "EDIT", "HND", "MDI", "INC", "MEM"):
+        control.select_mode(before)
+        assert give(library, handle, 9, value) == 0
+        assert control.mode is PowerMateMode[mode]
 
 
 @pytest.mark.covers("fanuc.cnc_opdi.number.10", "fanuc.cnc_opdi.sig10.255", "fanuc.cnc_opdi.sig10.range")

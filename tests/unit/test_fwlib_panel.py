@@ -84,6 +84,13 @@ def test_a_bit_selects_its_signal_alone(bit: int, name: str, value: int) -> None
     _, alone = library.cnc_rdopnlsgnl(handle, 1 << bit)
     assert (alone.type, getattr(alone, name)) == (1 << bit, value)
     assert sum(getattr(alone, other) for other in members) == value
+    assert library.cnc_wropnlsgnl(handle, fwlib.IODBSGNL(type=ALL, **members)) == 0
+    _, others = library.cnc_rdopnlsgnl(handle, ALL & ~(1 << bit))
+    assert others.type == ALL & ~(1 << bit)
+    assert {other: getattr(others, other) for other in members} == members | {name: 0}
+    assert library.cnc_wropnlsgnl(handle, fwlib.IODBSGNL(type=ALL & ~(1 << bit))) == 0
+    found = library.cnc_rdopnlsgnl(handle, ALL)[1]
+    assert {other: getattr(found, other) for other in members} == dict.fromkeys(members, 0) | {name: value}
 
 
 @pytest.mark.covers("fanuc.cnc_rdopnlsgnl")
@@ -137,6 +144,8 @@ def test_mode(value: int, aut: int) -> None:
     control, library, handle = written(mode=value)
     assert library.cnc_statinfo(handle)[1].aut == aut
     assert control.pmc.read("F", 73, 73)[0] == (0, 1, 3, 4, 5, 0x15)[value]
+    control.power_cycle()
+    assert library.cnc_statinfo(handle)[1].aut == aut
     assert library.cnc_rdopnlsgnl(handle, 1)[1].mode == value
 
 
@@ -157,6 +166,8 @@ def test_rapid_override(value: int, mm_min: int) -> None:
     control.advance(300)
     assert round(control.status().axes["X"].velocity * 60.0) == mm_min
     assert control.pmc.read("F", 76, 76) == bytes([value << 4])
+    control.power_cycle()
+    assert (control.signals.rapid_override, control.pmc.read("F", 76, 76)[0]) == (value, value << 4)
 
 
 JOG_PERCENT = (
@@ -181,6 +192,8 @@ def test_jog_override(value: int, percent: float) -> None:
     assert control.status().axes["Z"].velocity * 60.0 == pytest.approx(3000.0 * percent / 100.0, abs=1e-6)
     counts = int.from_bytes(control.pmc.read("F", 79, 80), "little")  # as the PMC sees it: 0.01 %, inverted
     assert 0xFFFF - counts == round(percent * 100)
+    control.power_cycle()
+    assert control.signals.jog_override == percent
 
 
 @pytest.mark.parametrize(
@@ -199,6 +212,8 @@ def test_feed_override(value: int, percent: int) -> None:
     control.advance(300)
     assert control.status().axes["Y"].velocity * 60.0 == pytest.approx(450.0 * percent / 100.0, abs=1e-6)
     assert control.pmc.read("F", 78, 78) == bytes([255 - percent])
+    control.power_cycle()
+    assert (control.signals.feed_override, control.pmc.read("F", 78, 78)) == (percent, bytes([255 - percent]))
 
 
 PROGRAM = b"O0004\nG1 X2. F600\n/Y3.\nZ4.\n"
@@ -341,6 +356,16 @@ def test_a_general_purpose_signal(bit: int) -> None:
     assert library.cnc_rdopnlgnrl(handle, 1 << bit)[1].sgnal == 1 << bit
     library.cnc_wropnlgnrl(handle, fwlib.IODBGNRL(type=1 << bit, sgnal=0))
     assert library.cnc_rdopnlgnrl(handle, 0xFF)[1].sgnal == 0xFF ^ 1 << bit
+    others = 0xFF ^ 1 << bit  # what is not selected is not written, and not read
+    for value in (0, 0xFF):
+        library.cnc_wropnlgnrl(handle, fwlib.IODBGNRL(type=0xFF, sgnal=value))
+        library.cnc_wropnlgnrl(handle, fwlib.IODBGNRL(type=others, sgnal=0xFF ^ value))
+        assert library.cnc_rdopnlgnrl(handle, 0xFF)[1].sgnal == (0xFF ^ value) ^ 1 << bit
+    library.cnc_wropnlgnrl(handle, fwlib.IODBGNRL(type=0xFF, sgnal=0xFF))
+    _, found = library.cnc_rdopnlgnrl(handle, others)
+    assert (found.type, found.sgnal) == (others, others)
+    control.power_cycle()
+    assert library.cnc_rdopnlgnrl(handle, 0xFF)[1].sgnal == 0xFF
 
 
 @pytest.mark.covers("fanuc.cnc_wropnlgsname", "fanuc.cnc_wropnlgnrl")
@@ -403,6 +428,13 @@ def test_a_signal_has_a_name_of_eight_characters(bit: int) -> None:
     assert one.type == 1 << bit
     assert bytes(one).count(b"NAME-OF-") == 1
     assert bytes(one)[4:].count(b" ") == 0
+    rest = fwlib.IODBRDNA(type=0xFF ^ 1 << bit, **{f"sgnl{k}_name": b"OTHER" for k in range(1, 9)})
+    assert library.cnc_wropnlgsname(handle, rest) == 0
+    _, found = library.cnc_rdopnlgsname(handle, 0xFF)
+    kept = {f"sgnl{bit + 1}_name": b"NAME-OF-"}
+    assert {name: getattr(found, name) for name in names} == dict.fromkeys(names, b"OTHER   ") | kept
+    _, found = library.cnc_rdopnlgsname(handle, 0xFF ^ 1 << bit)
+    assert (found.type, getattr(found, f"sgnl{bit + 1}_name")) == (0xFF ^ 1 << bit, b"")
 
 
 @pytest.mark.covers("fanuc.cnc_rdopnlgnrl", "fanuc.cnc_rdopnlgsname")
