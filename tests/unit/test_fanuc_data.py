@@ -355,6 +355,10 @@ def test_parameters_that_are_refused_change_nothing() -> None:
         assert fwlib.cnc_rdparam(handle, 1320, axis, 28)[0] == EW.EW_ATTRIB
     assert fwlib.cnc_rdparam(handle, 6080, 1, 28)[0] == EW.EW_ATTRIB
     assert fwlib.cnc_rdparam(handle, 6080, 0, 5)[0] == OK  # reading needs no option
+    control.state.parameters_writable = True
+    assert fwlib.cnc_wrparam(handle, 8, psd(3210, 0, ldata=77)) == OK  # what cannot be read can be written
+    assert fwlib.cnc_wrparas(handle, 8, record(3210, 3, 0, 78)) == OK
+    assert control.parameters.value(3210) == 78
 
 
 @pytest.mark.covers("fanuc.cnc_wrparam")

@@ -170,6 +170,22 @@ def test_rapid_override(value: int, mm_min: int) -> None:
     assert (control.signals.rapid_override, control.pmc.read("F", 76, 76)[0]) == (value, value << 4)
 
 
+@pytest.mark.covers("fanuc.IODBSGNL.rpd_ovrd.3")
+def test_f0_follows_its_parameter_at_once() -> None:
+    control, _, _ = written(rpd_ovrd=3)
+    control.programs.memory.create("O0004", b"O0004\nG0 X300.\n")
+    control.select_program(4)
+    control.parameters.set(1421, 700, 1)
+    control.cycle_start()
+    control.advance(300)
+    seen = [round(control.status().axes["X"].velocity * 60.0)]
+    for mm_min in (250, 15_000):
+        control.parameters.set(1421, mm_min, 1)
+        control.advance(600)
+        seen.append(round(control.status().axes["X"].velocity * 60.0))
+    assert seen == [700, 250, 15_000]
+
+
 JOG_PERCENT = (
     0, 0.1, 0.14, 0.2, 0.27, 0.37, 0.52, 0.72, 1.0, 1.4, 2.0, 2.7, 3.7, 5.2, 7.2, 10.0, 14.0, 20.0, 27.0, 37.0, 52.0,
     72.0, 100, 140, 200,
@@ -322,6 +338,7 @@ def test_a_switch_of_the_panel_is_that_switch_alone(name: str, value: int) -> No
         "feed_hold": control.signals.state.hold_is_on,
     }
     assert found == {each: bool(value if each == name else 1 - value) for each in OTHERS}
+    assert bool(control.pmc.read("F", 2, 2)[0] & 0x80) is switches.dry_run
     bit = 4 << OTHERS.index(name)
     assert control.pmc.read("F", 75, 75)[0] == (bit if value else 0xFC & ~bit)
 

@@ -304,7 +304,7 @@ def test_diagnosis_data_of_a_control_that_moves() -> None:
 @pytest.mark.covers("fanuc.concept.axis_number")
 def test_positions_of_all_axes_at_once() -> None:
     control, handle = attached()
-    control.control.offsets.set("G54", {"X": 2.0, "Y": -1.0})
+    control.control.offsets.set("G54", {"X": 2.0, "Y": -1.0, "Z": 0.25})
     control.positions.preset_relative({3: 500})
     registered(control, O7="\nN25G54G1X6.Y3.Z-1.F6000\nM30\n")
     running(control, 7)
@@ -313,7 +313,10 @@ def test_positions_of_all_axes_at_once() -> None:
     assert code == OK
     every, places = data.pos.faxis, control.positions.read()
     assert list(every.machine)[:3] == [each.machine for each in places]
-    assert list(every.absolute)[:3] == [places[0].machine - 2000, places[1].machine + 1000, places[2].machine]
+    offsets = (2000, -1000, 250)
+    assert list(every.absolute)[:3] == [
+        place.machine - offset for place, offset in zip(places, offsets, strict=True)
+    ]
     assert list(every.relative)[:3] == [places[0].machine, places[1].machine, places[2].machine + 500]
     assert places[2].machine < 0 < places[0].machine
     assert fwlib.cnc_rdseqnum(handle)[1].data == data.seqnum == 25
