@@ -31,6 +31,7 @@ def read(name: str, handle: int, axis: int, length: int) -> tuple[EW, list[int]]
 
 @pytest.mark.covers("fanuc.cnc_rdprgnum")
 @covers("cnc_allclibhndl", "cnc_freelibhndl", "concept.handle_lifecycle")
+@pytest.mark.covers("fanuc.common.handle2", "fanuc.range.node")
 def test_a_handle_is_opened_used_and_closed() -> None:
     control, handle = attached()
     assert 0 < handle <= 0xFFFF
@@ -53,6 +54,8 @@ def test_a_handle_is_opened_used_and_closed() -> None:
 @pytest.mark.covers("fanuc.EW_HSSB")
 @pytest.mark.covers("fanuc.cnc_absolute")
 @covers("cnc_allclibhndl2", "range.node")
+@pytest.mark.covers("fanuc.concept.handle_lifecycle")
+@pytest.mark.covers("fanuc.cnc_absolute.err.EW_ATTRIB")
 def test_nodes_0_to_7_are_controls_of_their_own() -> None:
     attached()
     controls = [PowerMate(axes=axes) for axes in (1, 2, 4)]
@@ -77,6 +80,9 @@ def test_nodes_0_to_7_are_controls_of_their_own() -> None:
 
 
 @pytest.mark.covers("fanuc.cnc_absolute")
+@pytest.mark.covers("fanuc.concept.handle_lifecycle", "fanuc.range.node")
+@pytest.mark.covers("fanuc.cnc_absolute.err.EW_ATTRIB")
+@pytest.mark.covers("fanuc.cnc_allclibhndl")
 def test_the_default_node_can_be_changed_and_nodes_be_listed() -> None:
     attached()
     fwlib.attach(5, PowerMate(axes=2, model="D"))
@@ -115,6 +121,14 @@ def test_a_fault_of_a_node_is_the_answer_of_every_call() -> None:
 
 @pytest.mark.covers("fanuc.cnc_download", "fanuc.cnc_freelibhndl")
 @pytest.mark.covers("fanuc.cnc_dwnstart")
+@pytest.mark.covers(
+    "fanuc.concept.handle_lifecycle",
+    "fanuc.common.handle2",
+    "fanuc.concept.download_session",
+    "fanuc.concept.upload_session",
+)
+@pytest.mark.covers("fanuc.cnc_download.err.EW_FUNC")
+@pytest.mark.covers("fanuc.cnc_allclibhndl")
 def test_closing_a_handle_breaks_its_transfers_off_and_no_others() -> None:
     control, handle = attached()
     _, other = fwlib.cnc_allclibhndl()
@@ -130,6 +144,8 @@ def test_closing_a_handle_breaks_its_transfers_off_and_no_others() -> None:
 
 @pytest.mark.covers("fanuc.cnc_freelibhndl", "fanuc.cnc_relative")
 @pytest.mark.covers("fanuc.cnc_wrrelpos")
+@pytest.mark.covers("fanuc.concept.handle_lifecycle", "fanuc.common.handle2")
+@pytest.mark.covers("fanuc.cnc_allclibhndl")
 def test_two_sessions_have_handles_of_their_own() -> None:
     control, handle = attached()
     session = fwlib.Session()
@@ -159,6 +175,10 @@ def test_example_actual_feed() -> None:
     control.control.set_overrides(feed=0.5)
     control.advance(1000)
     assert fwlib.cnc_actf(handle)[1].data == 600
+    for percent, shown in ((0.33, 396), (0.4996, 600), (0.5003, 600)):  # the nearest whole number
+        control.control.set_overrides(feed=percent)
+        control.advance(400)
+        assert fwlib.cnc_actf(handle)[1].data == shown
     control.feed_hold()
     control.advance(1000)
     assert fwlib.cnc_actf(handle)[1].data == 0
@@ -171,6 +191,11 @@ def test_actual_feed_in_inch_has_two_decimals() -> None:
     running(control, 7)
     control.advance(2000)
     assert fwlib.cnc_actf(handle)[1].data == 5550
+    control, handle = attached(inch_input=True, rotary=(2,))
+    registered(control, O7="\nG1 A90. F300\nM30\n")
+    running(control, 7)
+    control.advance(1000)
+    assert fwlib.cnc_actf(handle)[1].data == 300  # deg/min
 
 
 @covers(
@@ -178,6 +203,8 @@ def test_actual_feed_in_inch_has_two_decimals() -> None:
 )
 @pytest.mark.covers("fanuc.ODBAXIS.data", "fanuc.ODBAXIS.type")
 @pytest.mark.covers("fanuc.struct.ODBAXIS")
+@pytest.mark.covers("fanuc.concept.axis_number")
+@pytest.mark.covers("fanuc.ALL_AXES")
 def test_example_absolute() -> None:
     control, handle = attached()
     moved(control, "G0 X120.005 Y-50.119 Z0.08")
@@ -187,6 +214,12 @@ def test_example_absolute() -> None:
 
 
 @covers("example.cnc_machine", "cnc_machine")
+@pytest.mark.covers(
+    "fanuc.concept.axis_number",
+    "fanuc.concept.decimal_point",
+    "fanuc.concept.position_contents",
+    "fanuc.param.1001_0",
+)
 def test_example_machine_in_inch_output() -> None:
     control, handle = attached(inch_output=True, inch_input=True)
     moved(control, "G0 Y-26.5593")
@@ -194,6 +227,9 @@ def test_example_machine_in_inch_output() -> None:
 
 
 @covers("example.cnc_relative", "cnc_relative")
+@pytest.mark.covers(
+    "fanuc.concept.axis_number", "fanuc.concept.decimal_point", "fanuc.concept.position_contents"
+)
 def test_example_relative_of_a_rotary_axis_is_not_folded() -> None:
     control, handle = attached(axes=4, rotary=(4,))
     moved(control, "G0 A900.051")
@@ -201,6 +237,7 @@ def test_example_relative_of_a_rotary_axis_is_not_folded() -> None:
 
 
 @covers("example.cnc_distance", "cnc_distance")
+@pytest.mark.covers("fanuc.concept.decimal_point", "fanuc.concept.position_contents")
 def test_example_distance_is_twice_the_real_one() -> None:
     control, handle = attached(axes=4, rotary=(3,))
     assert [control.units.axis_name(axis) for axis in (1, 2, 3, 4)] == ["X", "Y", "A", "Z"]
@@ -236,6 +273,7 @@ def test_example_relative_preset_to_the_origin() -> None:
 
 @pytest.mark.covers("fanuc.cnc_wrrelpos")
 @covers("cnc_wrrelpos.err.EW_LENGTH", "cnc_wrrelpos.err.EW_ATTRIB", "cnc_wrrelpos.err.EW_DATA")
+@pytest.mark.covers("fanuc.concept.length_argument", "fanuc.concept.axis_number")
 def test_presets_that_are_refused_change_nothing() -> None:
     control, handle = attached()
     moved(control, "G0 X1. Y2. Z3.")
@@ -256,6 +294,9 @@ def test_presets_that_are_refused_change_nothing() -> None:
 
 
 @pytest.mark.covers("fanuc.cnc_wrtofs")
+@pytest.mark.covers(
+    "fanuc.concept.position_contents", "fanuc.cnc_relative", "fanuc.cnc_absolute", "fanuc.cnc_machine"
+)
 def test_positions_know_work_offsets_tool_length_and_units() -> None:
     control, handle = attached()
     control.parameters.set(1221, 10_000, 1)
@@ -280,6 +321,14 @@ def test_positions_know_work_offsets_tool_length_and_units() -> None:
         ("IS-B", True, 4861),
     ],
 )
+@pytest.mark.covers(
+    "fanuc.cnc_relative",
+    "fanuc.cnc_absolute",
+    "fanuc.cnc_machine",
+    "fanuc.param.1004_0",
+    "fanuc.param.1004_1",
+    "fanuc.concept.increment_system",
+)
 def test_increments_scale_positions_of_linear_axes(increment: str, inch: bool, counts: int) -> None:
     control, handle = attached(increment=increment, inch_input=inch, axes=2, rotary=(2,))
     moved(control, "G21 G0 X12.34567 A-7.5" if not inch else "G0 X.48605 A-7.5")
@@ -288,6 +337,7 @@ def test_increments_scale_positions_of_linear_axes(increment: str, inch: bool, c
 
 
 @covers("concept.decimal_point", "cnc_absolute", "cnc_machine")
+@pytest.mark.covers("fanuc.concept.position_contents", "fanuc.param.0000_2")
 def test_units_follow_g20_and_the_setting() -> None:
     control, handle = attached()
     moved(control, "G20 G0 X2.")
@@ -304,6 +354,7 @@ def test_units_follow_g20_and_the_setting() -> None:
 
 
 @covers("example.cnc_skip", "cnc_skip")
+@pytest.mark.covers("fanuc.concept.position_contents")
 def test_skip_positions_are_those_at_the_signal() -> None:
     control, handle = attached(axes=2)
     assert read("skip", handle, ALL_AXES, 12)[1][:2] == [0, 0]
@@ -319,9 +370,23 @@ def test_skip_positions_are_those_at_the_signal() -> None:
     control.skip_signal(False)
     control.skip_signal(True)
     assert read("skip", handle, 1, 8)[1][0] > there[0]
+    control.power_cycle()
+    assert read("skip", handle, ALL_AXES, 12)[1][:2] == [0, 0]
+
+
+@pytest.mark.covers("fanuc.concept.position_contents")
+@covers("cnc_skip", "cnc_machine", "cnc_absolute")
+def test_skip_positions_are_absolute_ones() -> None:
+    control, handle = attached(axes=2)
+    control.parameters.set(1221, 7_000, 2)
+    moved(control, "G54 G0 X5. Y3.")
+    control.skip_signal(True)
+    assert read("skip", handle, ALL_AXES, 12)[1][:2] == [5_000, 3_000]
+    assert read("machine", handle, ALL_AXES, 12)[1][:2] == [5_000, 10_000]
 
 
 @covers("example.cnc_srvdelay", "cnc_srvdelay")
+@pytest.mark.covers("fanuc.concept.position_contents")
 def test_servo_delay_is_the_following_error() -> None:
     control, handle = attached(servo=True, axes=2)
     registered(control, O5="\nG1 X60. Y-45. F3000\nM30\n")  # 75 mm along both, 40 and -30 mm/s
@@ -340,6 +405,7 @@ def test_servo_delay_is_the_following_error() -> None:
 
 @pytest.mark.covers("fanuc.cnc_actf")
 @covers("example.cnc_accdecdly", "cnc_accdecdly")
+@pytest.mark.covers("fanuc.concept.position_contents")
 def test_nothing_is_delayed_by_acceleration() -> None:
     control, handle = attached()
     registered(control, O5="\nG1 X60. F3000\nM30\n")
@@ -420,6 +486,8 @@ def test_reads_need_no_option() -> None:
     "fanuc.ODBDY.pos.oaxis.relative",
 )
 @pytest.mark.covers("fanuc.struct.ODBDY")
+@pytest.mark.covers("fanuc.concept.subprogram_numbers")
+@pytest.mark.covers("fanuc.cnc_wrrelpos")
 def test_the_dynamic_data_are_those_of_the_single_functions() -> None:
     control, handle = attached(axes=4, rotary=(4,))
     registered(
@@ -456,6 +524,7 @@ def test_the_dynamic_data_are_those_of_the_single_functions() -> None:
 
 @pytest.mark.covers("fanuc.cnc_rddynamic")
 @covers("cnc_rddynamic.err.EW_LENGTH", "cnc_rddynamic.err.EW_ATTRIB")
+@pytest.mark.covers("fanuc.concept.length_argument", "fanuc.concept.axis_number")
 def test_lengths_and_axes_of_the_dynamic_data() -> None:
     _, handle = attached(axes=2)
     assert fwlib.cnc_rddynamic(handle, 1, 37)[0] == EW.EW_LENGTH
@@ -478,6 +547,8 @@ ENDS = {
     [pytest.param(bit, marks=covers(f"ODBDY.alarm.bit{bit}"), id=str(bit)) for bit in range(16)],
 )
 @pytest.mark.covers("fanuc.ODBDY.alarm", "fanuc.struct.ODBDY")
+@pytest.mark.covers("fanuc.concept.alarm_ps000_ps101")
+@pytest.mark.covers("fanuc.cnc_rddynamic")
 def test_bits_of_the_alarm_status(bit: int) -> None:
     control, handle = attached()
 
@@ -541,6 +612,7 @@ def test_a_program_that_tries_again_what_is_busy_sees_time_pass() -> None:
     assert control.positions.read()[0].machine >= 690
 
 
+@pytest.mark.covers("fanuc.cnc_allclibhndl2", "fanuc.cnc_actf")
 def test_controls_with_one_clock_stay_in_step() -> None:
     attached()
     clock: Any = Poll(3)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import struct
-from collections.abc import Iterable
 from typing import Any
 
 import pytest
@@ -30,6 +29,7 @@ def offset(handle: int, number: int) -> int:
 
 @pytest.mark.covers("fanuc.cnc_machine")
 @covers("cnc_rdtofs", "cnc_wrtofs", "example.cnc_rdtofs", "example.cnc_wrtofs", "enum.offset_type.0")
+@pytest.mark.covers("fanuc.concept.tool_offset_memory")
 def test_a_tool_offset_is_written_read_and_used() -> None:
     control, handle = attached()
     assert offset(handle, 99) == 0
@@ -48,6 +48,7 @@ def test_a_tool_offset_is_written_read_and_used() -> None:
     "cnc_rdtofs.err.EW_LENGTH", "cnc_rdtofs.err.EW_NUMBER", "cnc_rdtofs.err.EW_ATTRIB", "cnc_wrtofs.err.EW_LENGTH",
     "cnc_wrtofs.err.EW_NUMBER", "cnc_wrtofs.err.EW_ATTRIB", "concept.tool_offset_memory",
 )  # fmt: skip
+@pytest.mark.covers("fanuc.concept.length_argument")
 def test_tool_offsets_that_are_refused() -> None:
     _, handle = attached(offsets=64)
     assert fwlib.cnc_wrtofs(handle, 64, 0, 8, 5) == OK
@@ -74,6 +75,7 @@ def test_tool_offsets_that_are_refused() -> None:
     ],
 )
 @pytest.mark.covers("fanuc.cnc_wrtofs")
+@pytest.mark.covers("fanuc.concept.decimal_point", "fanuc.concept.increment_system")
 def test_unit_and_range_of_tool_offsets(increment: str, limit: int, mm: float, inch: float) -> None:
     for model in ("H", "D"):
         control, handle = attached(increment=increment, model=model)
@@ -110,6 +112,7 @@ def test_unit_and_range_of_tool_offsets(increment: str, limit: int, mm: float, i
     "fanuc.ODBTLINF.use_no",
 )
 @pytest.mark.covers("fanuc.struct.IODBTO", "fanuc.struct.ODBTLINF")
+@pytest.mark.covers("fanuc.concept.tool_offset_memory")
 def test_examples_of_tool_offset_ranges() -> None:
     _, handle = attached()
     values = [37 * k - 1500 for k in range(1, 100)]
@@ -137,6 +140,7 @@ def test_examples_of_tool_offset_ranges() -> None:
     "cnc_rdtofsr.err.EW_LENGTH", "cnc_rdtofsr.err.EW_NUMBER", "cnc_rdtofsr.err.EW_ATTRIB", "cnc_wrtofsr.err.EW_LENGTH",
     "cnc_wrtofsr.err.EW_NUMBER", "cnc_wrtofsr.err.EW_ATTRIB",
 )  # fmt: skip
+@pytest.mark.covers("fanuc.concept.length_argument", "fanuc.concept.tool_offset_memory")
 def test_tool_offset_ranges_that_are_refused_change_nothing() -> None:
     _, handle = attached()
     for code, first, last, kind, length in (
@@ -189,6 +193,7 @@ AXIS_TYPES = {
 @pytest.mark.parametrize("kind", [pytest.param(k, marks=covers(f"paramtype.{k}"), id=k) for k in TYPES])
 @covers("enum.param_axis.0")
 @pytest.mark.covers("fanuc.cnc_rdparam.err.EW_LENGTH", "fanuc.cnc_rdparar", "fanuc.cnc_wrparam.err.EW_ATTRIB")
+@pytest.mark.covers("fanuc.concept.axis_number")
 def test_parameters_that_have_one_value(kind: str) -> None:
     _, handle = attached()
     number, given, attribute, size = TYPES[kind]
@@ -223,6 +228,7 @@ def test_parameters_that_have_one_value(kind: str) -> None:
     "fanuc.cnc_wrparam.err.EW_ATTRIB",
     "fanuc.cnc_wrparas",
 )
+@pytest.mark.covers("fanuc.concept.axis_number")
 def test_parameters_of_axes(kind: str) -> None:
     _, handle = attached()
     number, values, size = AXIS_TYPES[kind]
@@ -254,6 +260,7 @@ def test_parameters_of_axes(kind: str) -> None:
 @covers("cnc_rdparam", "example.cnc_rdparam", "ncparam.1020")
 @pytest.mark.covers("fanuc.IODBPSD.u.cdatas")
 @pytest.mark.covers("fanuc.struct.IODBPSD")
+@pytest.mark.covers("fanuc.ALL_AXES")
 def test_example_axis_names() -> None:
     _, handle = attached(axes=4, rotary=(3,))
     code, data = fwlib.cnc_rdparam(handle, 1020, ALL_AXES, 4 + 1 * fwlib.MAX_AXIS)
@@ -305,6 +312,13 @@ def test_example_stroke_limits_act_on_the_machine() -> None:
 )  # fmt: skip
 @pytest.mark.covers("fanuc.cnc_wrparam")
 @pytest.mark.covers("fanuc.struct.ODBPARAIF")
+@pytest.mark.covers("fanuc.concept.length_argument", "fanuc.concept.axis_number", "fanuc.common.allmode")
+@pytest.mark.covers(
+    "fanuc.paramtype.two_word_axis",
+    "fanuc.enum.param_axis.0",
+    "fanuc.enum.param_axis.1..m",
+    "fanuc.enum.param_axis.ALL_AXES",
+)
 def test_parameters_that_are_refused_change_nothing() -> None:
     control, handle = attached(options=("pmc_axis",))
     before = {key: control.parameters.value(*key) for key in control.parameters._values}
@@ -334,7 +348,17 @@ def test_parameters_that_are_refused_change_nothing() -> None:
     assert fwlib.cnc_rdparam(handle, -1, 0, 28)[0] == EW.EW_NUMBER
     assert fwlib.cnc_rdparam(handle, 3210, 0, 28)[0] == EW.EW_NUMBER  # cannot be read
     assert fwlib.cnc_rdparam(handle, 9, 0, 4)[0] == EW.EW_LENGTH
+    for axis, least in ((2, 4 + 4), (ALL_AXES, 4 + 4 * 3)):  # 1320 has two words
+        assert fwlib.cnc_rdparam(handle, 1320, axis, least - 1)[0] == EW.EW_LENGTH
+        assert fwlib.cnc_rdparam(handle, 1320, axis, least)[0] == OK
+    for axis in (0, 7, -2):
+        assert fwlib.cnc_rdparam(handle, 1320, axis, 28)[0] == EW.EW_ATTRIB
+    assert fwlib.cnc_rdparam(handle, 6080, 1, 28)[0] == EW.EW_ATTRIB
     assert fwlib.cnc_rdparam(handle, 6080, 0, 5)[0] == OK  # reading needs no option
+    control.state.parameters_writable = True
+    assert fwlib.cnc_wrparam(handle, 8, psd(3210, 0, ldata=77)) == OK  # what cannot be read can be written
+    assert fwlib.cnc_wrparas(handle, 8, record(3210, 3, 0, 78)) == OK
+    assert control.parameters.value(3210) == 78
 
 
 @pytest.mark.covers("fanuc.cnc_wrparam")
@@ -356,6 +380,7 @@ def test_a_bit_is_changed_by_writing_its_byte() -> None:
     "fanuc.cnc_delete.err.EW_BUSY", "fanuc.cnc_dwnstart", "fanuc.cnc_search.err.EW_BUSY", "fanuc.cnc_wrparam"
 )
 @pytest.mark.covers("fanuc.struct.ODBPARAIF")
+@pytest.mark.covers("fanuc.concept.alarm_ps000_ps101")
 def test_some_parameters_need_the_power_switched_off() -> None:
     control, handle = attached(axes=2)
     registered(control, O12="\nM30\n")
@@ -401,6 +426,9 @@ SIZES = {0: 1, 1: 1, 2: 2, 3: 4}
     "enum.prm_attr.1", "enum.prm_attr.2", "enum.prm_attr.3", "concept.sparse_parameters", "concept.range_growth",
     "struct.IODBPSD", "IODBPSD.type",
 )  # fmt: skip
+@pytest.mark.covers("fanuc.concept.axis_number")
+@pytest.mark.covers("fanuc.ALL_AXES", "fanuc.MAX_AXIS")
+@pytest.mark.covers("fanuc.paramtype.byte_axis", "fanuc.paramtype.two_word_axis")
 def test_a_range_of_parameters_is_a_sequence_of_records() -> None:
     control, handle = attached(axes=3)
     control.parameters.set(1420, 24_000, 2)
@@ -432,6 +460,13 @@ def test_a_range_of_parameters_is_a_sequence_of_records() -> None:
 
 @pytest.mark.covers("fanuc.cnc_rdparar")
 @covers("cnc_rdparar.err.EW_LENGTH", "cnc_rdparar.err.EW_NUMBER", "cnc_rdparar.err.EW_ATTRIB")
+@pytest.mark.covers(
+    "fanuc.concept.length_argument",
+    "fanuc.concept.axis_number",
+    "fanuc.concept.axis_param_rule",
+    "fanuc.concept.range_growth",
+    "fanuc.concept.sparse_parameters",
+)
 def test_ranges_of_parameters_that_are_refused() -> None:
     _, handle = attached()
 
@@ -452,12 +487,15 @@ def test_ranges_of_parameters_that_are_refused() -> None:
     assert code(6711, -2, 6713, 100) == EW.EW_ATTRIB
     assert code(1410, 0, 1420, 100) == EW.EW_ATTRIB  # 1420 is of axes
     assert fwlib.cnc_rdparar(handle, 1401, 0, 1410, 100)[0] == OK
+    # Axis 6 is one that the control could have: what it has not is 0.
+    assert fwlib.cnc_rdparar(handle, 1420, 6, 1420, 8) == (OK, 1420, 1420, 8, record(1420, 3, 6, 0))
 
 
 @pytest.mark.parametrize(
     "slot", [pytest.param(k, marks=covers(f"ncparam.{6080 + k}"), id=str(6080 + k)) for k in range(10)]
 )
 @covers("cnc_wrparas", "example.cnc_wrparas")
+@pytest.mark.covers("fanuc.concept.param_record_stream")
 def test_example_ten_m_codes(slot: int) -> None:
     _, handle = attached()
     data = b"".join(struct.pack("<hhbx", 6080 + k, 0, 31 + 3 * k) for k in range(10))
@@ -476,6 +514,8 @@ def record(number: int, kind: int, axis: int, *values: int) -> bytes:
 
 @pytest.mark.covers("fanuc.cnc_wrparas")
 @pytest.mark.covers("fanuc.cnc_rdparar")
+@pytest.mark.covers("fanuc.concept.param_record_stream")
+@pytest.mark.covers("fanuc.enum.prm_attr.3", "fanuc.paramtype.two_word_axis")
 def test_what_is_read_as_records_can_be_written_back() -> None:
     control, handle = attached()
     for number in (1420, 1423):
@@ -509,6 +549,7 @@ REFUSED: list[tuple[EW, bytes, int]] = [
     "cnc_wrparas.err.EW_NOOPT",
     "cnc_wrparas.err.EW_PROT",
 )  # fmt: skip
+@pytest.mark.covers("fanuc.concept.length_argument", "fanuc.concept.param_record_stream")
 def test_records_that_are_refused_change_nothing() -> None:
     control, handle = attached(options=False)
     for code, data, length in (
@@ -536,6 +577,7 @@ def test_records_that_are_refused_change_nothing() -> None:
     "fanuc.ODBPARAIF.next_no",
 )
 @pytest.mark.covers("fanuc.struct.ODBPARAIF")
+@pytest.mark.covers("fanuc.concept.sparse_parameters")
 def test_walking_through_the_parameters() -> None:
     _, handle = attached()
     rows = parameter_rows()
@@ -565,29 +607,38 @@ def attributes(number: int) -> int:
     return int(info.info[0].prm_type)
 
 
-BITS: dict[str, tuple[int, int, Iterable[int], Iterable[int]]] = {
-    # name: shift, mask, numbers that have it, numbers that have not
-    "bit2": (2, 1, (1320, 1020, 1006), (6711, 3201)),
-    "bit3": (3, 1, (), (6711, 6710, 1320)),
-    "bit4": (4, 1, (0, 12, 6711, 6750), (1320, 6710)),
-    "bit5": (5, 1, (1010,), (1020, 6711)),
-    "bit6": (6, 1, (1006, 1001, 1004), (1320, 6711)),
-    "bit7": (7, 1, (3210,), (3211, 6711)),
-    "bit8": (8, 1, (), (6711, 1320)),
-    "bit9_15": (9, 0x7F, (), tuple(parameter_rows())[::9]),
+# fmt: off
+BITS: dict[str, tuple[int, int, tuple[int, ...]]] = {
+    # name: shift, mask, all numbers that have it
+    "bit2": (2, 1, (
+        12, 1005, 1006, 1008, 1020, 1022, 1023, *range(1220, 1227), 1240, 1241, 1260, 1320, 1321, 1420, 1421, 1423,
+        1424, 1425, 1430, 1620, 1622, 1624, 1825, 1826, 1828, 1829, 1850, 1851, 2020, 2086, 8010, 8022,
+    )),
+    "bit3": (3, 1, ()),
+    "bit4": (4, 1, (0, 1, 12, 20, 100, 6711, 6712, 6713, *range(6750, 6759))),
+    "bit5": (5, 1, (1010,)),
+    "bit6": (6, 1, (
+        1001, 1004, 1006, 1008, 1010, 1020, 1022, 1023, 1240, 1241, 1260, 1850, 2020, 2086,
+    )),
+    "bit7": (7, 1, (3210,)),
+    "bit8": (8, 1, ()),
+    "bit9_15": (9, 0x7F, ()),
 }
+# fmt: on
 
 
 @pytest.mark.parametrize(
     "name", [pytest.param(n, marks=covers(f"ODBPARAIF.prm_type.{n}"), id=n) for n in BITS]
 )
 @pytest.mark.covers("fanuc.struct.ODBPARAIF")
+@pytest.mark.covers("fanuc.concept.setting_subset", "fanuc.concept.sparse_parameters")
+@pytest.mark.covers("fanuc.ODBPARAIF.prm_type.bit0_1")
 def test_attribute_bits(name: str) -> None:
-    shift, mask, have, have_not = BITS[name]
-    for number in have:
-        assert attributes(number) >> shift & mask == 1
-    for number in have_not:
-        assert attributes(number) >> shift & mask == 0
+    shift, mask, have = BITS[name]
+    _, handle = attached()
+    _, info = fwlib.cnc_rdparainfo(handle, 0, 65_535)
+    found = {each.prm_no: each.prm_type >> shift & mask for each in info.info}
+    assert found == {number: int(number in have) for number in parameter_rows()}
     flag = {"bit3": Attribute.UNSIGNED, "bit8": Attribute.SPINDLE}.get(name)
     if flag is not None:
         assert int(flag) == 1 << shift
@@ -595,6 +646,10 @@ def test_attribute_bits(name: str) -> None:
 
 @covers("ODBPARAIF.prm_type.bit0_1")
 @pytest.mark.covers("fanuc.struct.ODBPARAIF")
+@pytest.mark.covers("fanuc.concept.param_record_stream", "fanuc.concept.sparse_parameters")
+@pytest.mark.covers(
+    "fanuc.enum.prm_attr.0", "fanuc.enum.prm_attr.1", "fanuc.enum.prm_attr.2", "fanuc.enum.prm_attr.3"
+)
 def test_type_attribute() -> None:
     assert [attributes(number) & 3 for number in (3201, 6710, 1410, 6711, 1006, 1020, 1825, 1320)] == [
         0,
@@ -630,6 +685,12 @@ def test_settings_are_the_parameters_of_the_setting_screen() -> None:
     "cnc_rdsetr.err.EW_LENGTH", "cnc_rdsetr.err.EW_NUMBER", "cnc_rdsetr.err.EW_ATTRIB", "cnc_wrsets.err.EW_LENGTH",
     "option.param_write", "cnc_wrsets.err.EW_NUMBER", "cnc_wrsets.err.EW_ATTRIB", "cnc_wrsets.err.EW_NOOPT",
 )  # fmt: skip
+@pytest.mark.covers(
+    "fanuc.concept.length_argument",
+    "fanuc.concept.axis_number",
+    "fanuc.concept.axis_param_rule",
+    "fanuc.concept.setting_subset",
+)
 def test_settings_that_are_refused() -> None:
     control, handle = attached(options=False)
     assert fwlib.cnc_rdsetr(handle, 6711, 0, 6713, 23)[0] == EW.EW_LENGTH
@@ -659,6 +720,7 @@ def _with_option(number: int, option: str) -> Any:
 
 
 @pytest.mark.covers("fanuc.cnc_wrsets")
+@pytest.mark.covers("fanuc.concept.setting_subset")
 def test_counters_and_timers_are_settings() -> None:
     control, handle = attached()
     registered(control, O7="\nG1 X5. F600\nM30\n")

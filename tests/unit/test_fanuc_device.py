@@ -19,7 +19,7 @@ from polycnc.controllers.fanuc import PowerMate, PowerMateMode, fwlib
 from polycnc.controllers.fanuc.fwlib import EW
 from polycnc.errors import UsageError
 from support.often import share
-from support.power_mate import OK, attached, moved, registered, running
+from support.power_mate import OK, attached, moved, psd, registered, running
 
 MODES = {
     "MDI": (0, Mode.MDI), "MEM": (1, Mode.AUTO), "EDIT": (3, Mode.EDIT), "HND": (4, Mode.HANDLE), "JOG": (5, Mode.JOG),
@@ -238,6 +238,24 @@ def test_parameters_act_at_once(
     assert measured(control) == pytest.approx(after, rel=0.06)
 
 
+@pytest.mark.covers("fanuc.cnc_srvdelay", "fanuc.cnc_rdloopgain", "fanuc.cnc_wrparam")
+def test_gain_and_deviation_limit_act_at_once() -> None:
+    control, handle = attached(servo=True, axes=2)
+    assert fwlib.cnc_wrparam(handle, 6, psd(1825, 1, idata=6000)) == OK  # 60/s
+    assert fwlib.cnc_rdloopgain(handle)[1][:2] == [6000, 3000]
+    registered(control, O7="\nG1 X60. Y60. F2400\nM30\n", O8="\nG1 X0 F2400\nM30\n")
+    running(control, 7)
+    control.advance(800)
+    rate = 2400 / 60 / 2**0.5 * 1000  # increments a second along each axis
+    delays = fwlib.cnc_srvdelay(handle, -1, 12)[1].data[:2]
+    assert delays == [pytest.approx(rate / 60, rel=0.1), pytest.approx(rate / 30, rel=0.1)]
+    control.advance(5000)
+    assert fwlib.cnc_wrparam(handle, 8, psd(1828, 1, ldata=300)) == OK  # 0.3 mm, where 0.67 come
+    running(control, 8)
+    control.advance(500)
+    assert [(each.number, each.axis) for each in control.status().alarms] == [(411, "X")]
+
+
 def test_parameters_that_are_written_while_a_program_runs_act_with_the_next() -> None:
     control, _ = attached(axes=1)
     registered(control, O7="\nG1 X5. F3000\nM30\n")
@@ -251,6 +269,7 @@ def test_parameters_that_are_written_while_a_program_runs_act_with_the_next() ->
     assert control.machine.config.axes[0].soft_limits[1] > 1000
 
 
+@pytest.mark.covers("fanuc.ncparam.1320", "fanuc.ncparam.1321", "fanuc.param.1001_0")
 def test_speeds_and_limits_of_an_inch_machine() -> None:
     control = PowerMate(1, inch_output=True)
     control.parameters.set(1320, 123_456, 1)  # 0.0001 inch
@@ -264,6 +283,7 @@ def test_speeds_and_limits_of_an_inch_machine() -> None:
     ("code", "name"), [(0, "Y"), (ord("X"), "Y"), (7, "Y"), (ord("N"), "Y"), (ord("W"), "W")]
 )
 @pytest.mark.covers("fanuc.cnc_wrparam")
+@pytest.mark.covers("fanuc.ncparam.1020")
 def test_axis_names_come_from_a_parameter_and_are_never_unusable(code: int, name: str) -> None:
     control, handle = attached(axes=2)
     moved(control, "G0 X3. Y-4.")
@@ -314,6 +334,7 @@ def test_every_parameter_has_a_default_that_it_takes() -> None:
 # ---------------------------------------------------------------------- what survives
 
 
+@pytest.mark.covers("fanuc.cnc_rddynamic")
 def test_a_snapshot_is_gone_back_to() -> None:
     control, handle = attached(axes=2)
     registered(control, O7="\nN10 G1 X20. F3000\nN20 Y-7.\nM30\n")
@@ -343,6 +364,7 @@ def test_a_snapshot_is_gone_back_to() -> None:
 
 
 @pytest.mark.covers("fanuc.cnc_download", "fanuc.cnc_dwnend")
+@pytest.mark.covers("fanuc.cnc_allclibhndl", "fanuc.cnc_dwnstart", "fanuc.cnc_delete")
 def test_two_programs_in_two_threads_have_one_control() -> None:
     control, _ = attached(axes=1)
     opened = []
@@ -371,6 +393,7 @@ def test_two_programs_in_two_threads_have_one_control() -> None:
 
 @pytest.mark.covers("fanuc.cnc_wrmdiprog")
 @pytest.mark.covers("fanuc.cnc_dwnstart", "fanuc.cnc_wrmacro", "fanuc.cnc_wrmdiprog.err.EW_DATA")
+@pytest.mark.covers("fanuc.concept.selected_program")
 def test_power_off_and_on() -> None:
     control, handle = attached(axes=2)
     registered(control, O7="\nG1 X5. F600\nM30\n")

@@ -48,6 +48,12 @@ LISTS = {
 )
 @covers("example.cnc_rdprogdir_format", "cnc_rdprogdir", "concept.truncation")
 @covers("struct.PRGDIR", "PRGDIR.prg_data")
+@pytest.mark.covers(
+    "fanuc.concept.no_nul_termination",
+    "fanuc.LF",
+    "fanuc.concept.comment_rules",
+    "fanuc.concept.memory_accounting",
+)
 def test_example_directory(kind: int) -> None:
     _, handle = _directory()
     text = LISTS[kind]
@@ -67,6 +73,7 @@ def test_example_directory(kind: int) -> None:
 
 @covers("example.cnc_rdprogdir")
 @pytest.mark.covers("fanuc.cnc_rdprogdir")
+@pytest.mark.covers("fanuc.concept.no_nul_termination", "fanuc.format.progdir_type0")
 def test_example_directory_printed_program_by_program() -> None:
     _, handle = _directory()
     code, found = fwlib.cnc_rdprogdir(handle, 0, 200, 9000, 255)
@@ -77,6 +84,13 @@ def test_example_directory_printed_program_by_program() -> None:
 
 @pytest.mark.covers("fanuc.cnc_rdprogdir")
 @covers("concept.comment_rules", "concept.program_number_range")
+@pytest.mark.covers(
+    "fanuc.PERCENT",
+    "fanuc.format.progdir_type0",
+    "fanuc.format.progdir_type1",
+    "fanuc.format.progdir_type2",
+    "fanuc.concept.truncation",
+)
 def test_ranges_and_comments_of_the_directory() -> None:
     control, handle = attached()
     for kind in (0, 1, 2):
@@ -95,6 +109,7 @@ def test_ranges_and_comments_of_the_directory() -> None:
 
 @pytest.mark.covers("fanuc.cnc_rdprogdir")
 @covers("cnc_rdprogdir.err.EW_LENGTH", "cnc_rdprogdir.err.EW_NUMBER", "cnc_rdprogdir.err.EW_ATTRIB")
+@pytest.mark.covers("fanuc.concept.length_argument", "fanuc.concept.program_number_range")
 def test_directory_requests_that_are_refused() -> None:
     _, handle = _directory()
     for length in (0, -1):
@@ -117,6 +132,7 @@ def test_directory_requests_that_are_refused() -> None:
     "fanuc.ODBNC.u.bin.unused_mem",
 )
 @pytest.mark.covers("fanuc.struct.ODBNC")
+@pytest.mark.covers("fanuc.concept.length_argument", "fanuc.PERCENT", "fanuc.concept.memory_accounting")
 def test_program_information() -> None:
     _, handle = _directory()
     code, info = fwlib.cnc_rdproginfo(handle, 0, 12)
@@ -143,6 +159,8 @@ def test_program_information() -> None:
 @covers("example.cnc_rdprgnum", "cnc_rdprgnum", "concept.subprogram_numbers")
 @pytest.mark.covers("fanuc.ODBPRO.data", "fanuc.ODBPRO.mdata")
 @pytest.mark.covers("fanuc.struct.ODBPRO")
+@pytest.mark.covers("fanuc.concept.selected_program")
+@pytest.mark.covers("fanuc.cnc_rdseqnum")
 def test_example_program_numbers_in_a_subprogram() -> None:
     control, handle = attached()
     registered(
@@ -184,7 +202,29 @@ def test_example_sequence_number_is_kept_by_blocks_without_one() -> None:
     assert fwlib.cnc_rdseqnum(handle)[1].data == 40
 
 
+@covers("concept.seqnum_retention", "cnc_rdseqnum", "ODBSEQ.data", "concept.subprogram_numbers")
+@pytest.mark.covers("fanuc.cnc_rdprgnum", "fanuc.ODBDY.seqnum")
+def test_a_subprogram_without_sequence_numbers_keeps_that_of_its_caller() -> None:
+    control, handle = attached()
+    registered(
+        control,
+        O1="\nN5 G4P1\nN12345\nM98P2\nN30 M30\n",
+        O2="\nG4P40\nM98P3\nM30\n",
+        O3="\nG4P50\nN7 G4P60\nM99\n",
+    )
+    running(control, 1)
+    found = []
+    while control.programs.in_operation:
+        numbers = fwlib.cnc_rdprgnum(handle)[1]
+        found.append((numbers.mdata, numbers.data, fwlib.cnc_rdseqnum(handle)[1].data))
+        assert fwlib.cnc_rddynamic(handle, 1, 38)[1].seqnum == found[-1][2]
+        control.advance(5)
+    in_order = list(dict.fromkeys(found))
+    assert in_order[-3:] == [(1, 2, 12345), (1, 3, 12345), (1, 3, 7)]
+
+
 @covers("cnc_rdexecprog", "cnc_rdexecprog.err.EW_LENGTH")
+@pytest.mark.covers("fanuc.concept.subprogram_numbers", "fanuc.concept.truncation")
 def test_the_program_in_execution() -> None:
     control, handle = attached()
     registered(control, O7="\nN10G1X10.F600\nN20Y5.\nN30X0\nM30\n")
@@ -205,6 +245,7 @@ def test_the_program_in_execution() -> None:
 
 @covers("cnc_wrmdiprog", "example.cnc_wrmdiprog_format", "concept.mdi_program", "mode.MDI")
 @pytest.mark.covers("fanuc.cnc_absolute", "fanuc.cnc_wrmdiprog.err.EW_DATA")
+@pytest.mark.covers("fanuc.concept.program_number_range")
 def test_example_mdi_program() -> None:
     control, handle = attached(axes=1)
     control.select_mode("MDI")
@@ -223,6 +264,8 @@ def test_example_mdi_program() -> None:
     "cnc_wrmdiprog.err.EW_REJECT", "range.mdi_length",
 )  # fmt: skip
 @pytest.mark.covers("fanuc.cnc_wrmdiprog")
+@pytest.mark.covers("fanuc.concept.mode_matrix", "fanuc.concept.mdi_program")
+@pytest.mark.covers("fanuc.mode.MDI")
 def test_mdi_programs_that_are_refused() -> None:
     control, handle = attached(axes=1)
 
@@ -260,6 +303,7 @@ def test_mdi_programs_that_are_refused() -> None:
     "fanuc.ODBMDIP.mdiprog", "fanuc.ODBMDIP.mdipntr", "fanuc.ODBMDIP.crntprog", "fanuc.ODBMDIP.crntpntr"
 )
 @pytest.mark.covers("fanuc.struct.ODBMDIP")
+@pytest.mark.covers("fanuc.concept.mdi_program", "fanuc.concept.program_number_range")
 def test_mdi_pointers() -> None:
     control, handle = attached(axes=1)
     registered(control, O77="\nG4P80\nM99\n")
@@ -272,19 +316,17 @@ def test_mdi_pointers() -> None:
         assert code == OK
         return data.mdiprog, data.mdipntr, data.crntprog, data.crntpntr
 
-    def seen() -> list[tuple[int, int]]:
+    def seen() -> list[tuple[int, int, int, int]]:
         control.cycle_start()
-        found: list[tuple[int, int]] = []
+        found = []
         while control.control.channels[0].active:
             control.advance(5)
-            now = pointers()
-            assert (now[2], now[3]) >= (0, 0)
-            if control.control.channels[0].active and (not found or found[-1] != now[:2]):
-                found.append(now[:2])
-        return found
+            found.append(pointers())
+        return list(dict.fromkeys(found))
 
     assert pointers() == (0, 0, 0, 0)
-    assert seen() == [(0, 0), (77, 1), (0, 2), (0, 3)]
+    # One block is read ahead, in the program where it is.
+    assert seen() == [(0, 0, 77, 1), (77, 1, 0, 2), (0, 2, 0, 3), (0, 3, 0, 4), (0, 0, 0, 0)]
     assert fwlib.cnc_wrmdipntr(handle, 2) == OK
     assert pointers() == (0, 2, 0, 2)
     control.cycle_start()
@@ -292,6 +334,9 @@ def test_mdi_pointers() -> None:
     assert pointers()[:2] == (0, 2)
     assert pointers()[3] in (3, 4)  # read ahead
     control.reset()
+    assert fwlib.cnc_wrmdipntr(handle, 3) == OK
+    assert fwlib.cnc_wrmdiprog(handle, len(text), text) == OK
+    assert pointers() == (0, 0, 0, 0)  # another program begins at its head
 
 
 @pytest.mark.covers("fanuc.cnc_rdmdipntr", "fanuc.cnc_wrmdipntr", "fanuc.cnc_wrmdiprog")
@@ -300,6 +345,7 @@ def test_mdi_pointers() -> None:
     "cnc_wrmdipntr.err.EW_REJECT",
     "EW_MODE", "EW_REJECT",
 )  # fmt: skip
+@pytest.mark.covers("fanuc.concept.mode_matrix", "fanuc.concept.mdi_program")
 def test_mdi_pointers_that_are_refused() -> None:
     control, handle = attached(axes=1)
     assert fwlib.cnc_rdmdipntr(handle)[0] == EW.EW_MODE
@@ -322,6 +368,9 @@ def test_mdi_pointers_that_are_refused() -> None:
 @pytest.mark.covers("fanuc.cnc_rdexecprog", "fanuc.cnc_rdseqnum")
 @covers("cnc_seqsrch", "cnc_rewind")
 @pytest.mark.covers("fanuc.cnc_absolute")
+@pytest.mark.covers("fanuc.concept.seqnum_retention", "fanuc.concept.selected_program")
+@pytest.mark.covers("fanuc.cnc_search", "fanuc.cnc_seqsrch.err.EW_DATA", "fanuc.enum.search.foreground")
+@pytest.mark.covers("fanuc.cnc_rdprgnum")
 def test_a_start_begins_at_the_sequence_number_that_was_sought() -> None:
     control, handle = attached(axes=2)
     registered(control, O7="\nN10 G1 X10. F6000\nN20 Y5.\nN30 X2.5\nM30\n")
@@ -332,6 +381,9 @@ def test_a_start_begins_at_the_sequence_number_that_was_sought() -> None:
     assert fwlib.cnc_rewind(handle) == OK
     assert fwlib.cnc_rdexecprog(handle, 3)[3] == b"O00"
     assert fwlib.cnc_seqsrch(handle, 30) == OK
+    assert fwlib.cnc_seqsrch(handle, 10) == OK  # from the head, wherever the cursor was
+    assert fwlib.cnc_rdexecprog(handle, 3)[3] == b"N10"
+    assert fwlib.cnc_seqsrch(handle, 30) == OK
     control.parameters.set(1422, 6000)
     control.programs.register(7, "O0007\nN10 G1 X10. F6000\nN20 Y5.\nN30 G1 X2.5 F6000\nM30\n")
     control.cycle_start()
@@ -340,6 +392,13 @@ def test_a_start_begins_at_the_sequence_number_that_was_sought() -> None:
     control.cycle_start()  # from its head again
     control.advance(5000)
     assert list(fwlib.cnc_absolute(handle, -1, 12)[1].data[:2]) == [2500, 5000]
+    registered(control, O8="\nN20 G1 Y1. F6000\nN40 X4.\nM30\n")
+    assert fwlib.cnc_seqsrch(handle, 20) == OK
+    assert fwlib.cnc_search(handle, 8) == OK  # the cursor is that of the selected program
+    assert fwlib.cnc_rdexecprog(handle, 5)[3] == b"O0008"
+    assert fwlib.cnc_seqsrch(handle, 30) == EW.EW_DATA
+    assert fwlib.cnc_seqsrch(handle, 40) == OK
+    assert (fwlib.cnc_rdseqnum(handle)[1].data, fwlib.cnc_rdprgnum(handle)[1].data) == (40, 8)
 
 
 @pytest.mark.covers(
@@ -367,6 +426,7 @@ def test_a_start_begins_at_the_sequence_number_that_was_sought() -> None:
     "fanuc.cnc_wrmdiprog",
     "fanuc.cnc_wrmdiprog.err.EW_MODE",
 )
+@pytest.mark.covers("fanuc.concept.selected_program")
 def test_searches_of_the_cursor_that_are_refused() -> None:
     control, handle = attached(axes=1)
     registered(control, O7="\nN10 G1 X10. F600\nN20 X5.\nM30\n")
@@ -403,3 +463,11 @@ def test_searches_of_the_cursor_that_are_refused() -> None:
     control.advance(100)
     assert fwlib.cnc_seqsrch(handle, 10) == EW.EW_REJECT
     assert fwlib.cnc_rewind(handle) == EW.EW_REJECT
+    control.feed_hold()
+    control.advance(300)
+    assert fwlib.cnc_seqsrch(handle, 10) == EW.EW_REJECT
+    assert fwlib.cnc_rewind(handle) == EW.EW_REJECT
+    control.reset()
+    control.advance(300)
+    assert fwlib.cnc_seqsrch(handle, 10) == OK
+    assert fwlib.cnc_rewind(handle) == OK

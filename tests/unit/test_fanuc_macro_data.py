@@ -39,6 +39,7 @@ def shown(mantissa: int, decimals: int) -> str:
 
 
 @covers("cnc_rdmacro", "cnc_wrmacro", "example.cnc_rdmacro", "example.cnc_wrmacro", "enum.macro_type.decimal")
+@pytest.mark.covers("fanuc.concept.macro_empty", "fanuc.concept.macro_out_of_range")
 def test_macro_variables_in_decimal_form() -> None:
     control, handle = attached()
     for mantissa, decimals, value in (
@@ -90,6 +91,7 @@ def test_vacant_is_not_zero() -> None:
     "cnc_setmactype",
     "cnc_getmactype",
 )
+@pytest.mark.covers("fanuc.concept.macro_empty")
 def test_binary_form_reaches_farther_than_the_decimal_one() -> None:
     control, handle = attached()
     _, other = fwlib.cnc_allclibhndl()
@@ -131,6 +133,7 @@ def test_binary_form_reaches_farther_than_the_decimal_one() -> None:
 @pytest.mark.covers("fanuc.ODBMVINF.use_no1", "fanuc.ODBMVINF.use_no2", "fanuc.ODBM.dec_val")
 @pytest.mark.covers("fanuc.cnc_rdmacro", "fanuc.cnc_rdmacror.err.EW_NUMBER", "fanuc.cnc_wrmacro")
 @pytest.mark.covers("fanuc.struct.ODBM", "fanuc.struct.ODBMVINF")
+@pytest.mark.covers("fanuc.concept.macro_local_scope")
 def test_ranges_of_common_variables(
     options: Any, code: int, there: tuple[int, ...], missing: tuple[int, ...]
 ) -> None:
@@ -172,6 +175,7 @@ def test_local_variables_are_those_of_the_macro_and_cannot_be_written() -> None:
     "fanuc.IODBMR.datano_s", "fanuc.IODBMR.datano_e", "fanuc.IODBMR.data.mcr_val", "fanuc.IODBMR.data.dec_val"
 )
 @pytest.mark.covers("fanuc.struct.IODBMR")
+@pytest.mark.covers("fanuc.concept.macro_empty")
 def test_ranges_of_macro_variables() -> None:
     control, handle = attached()
     count = 20
@@ -201,6 +205,9 @@ def test_ranges_of_macro_variables() -> None:
 )  # fmt: skip
 @pytest.mark.covers("fanuc.cnc_wrmacro")
 @pytest.mark.covers("fanuc.cnc_wrmacror")
+@pytest.mark.covers(
+    "fanuc.concept.length_argument", "fanuc.concept.macro_out_of_range", "fanuc.concept.macro_local_scope"
+)
 def test_macro_requests_that_are_refused_change_nothing() -> None:
     control, handle = attached()
 
@@ -248,6 +255,7 @@ CALLS: list[Callable[[int], Any]] = [
 
 
 @pytest.mark.parametrize("mode", MODES)
+@pytest.mark.covers("fanuc.concept.mode_matrix")
 def test_data_functions_work_in_every_mode(mode: str) -> None:
     control, handle = attached()
     control.select_mode(mode)

@@ -135,6 +135,18 @@ def test_codes_call_programs_by_parameters() -> None:
     assert control.macros.get(500) == 8.0
 
 
+@pytest.mark.covers(*(f"fanuc.ncparam.{6080 + k}" for k in range(10)))
+def test_each_of_the_ten_m_codes_calls_its_own_program() -> None:
+    control, _ = attached()
+    for k in range(10):
+        control.parameters.set(6080 + k, 41 + 3 * k)
+        registered(control, **{f"O{9020 + k}": f"\n#{500 + k}=#1\nM99\n"})
+    registered(control, O1="\n" + "".join(f"M{41 + 3 * k}A{70 - 4 * k}.\n" for k in range(10)) + "M30\n")
+    assert until_over(control) is RunState.COMPLETED
+    assert [control.macros.get(500 + k) for k in range(10)] == [70.0 - 4.0 * k for k in range(10)]
+
+
+@pytest.mark.covers("fanuc.cnc_rdalminfo", "fanuc.ALMINFO.alm.alm_no", "fanuc.ALMINFO.alm.alm_msg")
 def test_an_alarm_of_a_program_has_its_number_and_text() -> None:
     control, handle = attached()
     registered(control, O1="\nG1X2.F6000\n#3000=23(TOOL BROKEN)\nG1X5.\nM30\n")
@@ -169,6 +181,7 @@ def test_an_alarm_of_a_program_has_its_number_and_text() -> None:
         ("G65P1", 122, "FOUR FOLD MACRO MODAL-CALL"),
     ],
 )
+@pytest.mark.covers("fanuc.cnc_rdalminfo")
 def test_errors_of_macros_have_the_controls_numbers(block: str, number: int, text: str) -> None:
     control, handle = attached()
     registered(control, O1=f"\n{block}\nM30\n")
@@ -244,6 +257,7 @@ def test_positions_are_read_when_the_blocks_before_have_been_executed() -> None:
     assert [control.macros.get(number) for number in (500, 501, 502)] == [3.5, -2.0, 4.5]
 
 
+@pytest.mark.covers("fanuc.concept.mdi_program")
 def test_mdi_takes_macro_statements_too() -> None:
     control, _ = attached()
     moved(control, "#500=4\nG0X[#500/8]")
@@ -363,6 +377,7 @@ def until_rest(control: PowerMate) -> RunState:
 
 
 @pytest.mark.covers("fanuc.cnc_wrmacro", "fanuc.cnc_wrmacro.err.EW_DATA")
+@pytest.mark.covers("fanuc.cnc_allclibhndl2")
 def test_two_handles_and_two_controls_do_not_share_variables() -> None:
     first, handle = attached()
     second = PowerMate()

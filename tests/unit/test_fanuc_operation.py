@@ -31,6 +31,7 @@ def shown(control: Any, lock: bool) -> list[tuple[int, ...]]:
     return seen
 
 
+@pytest.mark.covers("fanuc.concept.position_contents")
 def test_under_a_machine_lock_displays_show_the_motion_and_the_machine_stands() -> None:
     free, _ = attached(axes=2)
     locked, _ = attached(axes=2)

@@ -22,6 +22,7 @@ STORED = b"O1234\nM3S1200\nG0Z0\nG0X0Y0\nG1F500X120.Y-30.\nM30\n"
 
 
 @covers("example.cnc_download", "cnc_dwnstart", "cnc_download", "cnc_dwnend", "LF", "PERCENT")
+@pytest.mark.covers("fanuc.format.download", "fanuc.concept.download_session")
 def test_example_download_in_eight_pieces() -> None:
     control, handle = attached()
     assert sum(map(len, PIECES)) == 56
@@ -32,6 +33,7 @@ def test_example_download_in_eight_pieces() -> None:
 
 @covers("example.cnc_download_format", "format.download")
 @pytest.mark.parametrize("cut", [(23,), (1, 6, 11, 4, 1), (1,) * 23, (9, 9, 5), (2, 21)])
+@pytest.mark.covers("fanuc.LF")
 def test_example_download_cut_anywhere(cut: tuple[int, ...]) -> None:
     control, handle = attached()
     assert (len(FORMAT), sum(cut)) == (23, 23)
@@ -51,6 +53,7 @@ def test_what_stands_before_the_first_line_feed_and_behind_the_percent_is_ignore
     assert len(control.programs) == 1
 
 
+@pytest.mark.covers("fanuc.format.download", "fanuc.concept.duplicate_program")
 def test_several_programs_come_together_or_not_at_all() -> None:
     control, handle = attached()
     assert sent(handle, "\nO7\nM99\nO12(B)\nG4P1\nM99\n%") == (OK, OK)
@@ -60,6 +63,7 @@ def test_several_programs_come_together_or_not_at_all() -> None:
 
 
 @pytest.mark.covers("fanuc.cnc_dwnstart")
+@pytest.mark.covers("fanuc.format.download", "fanuc.PERCENT", "fanuc.concept.download_session")
 def test_a_stream_that_is_cut_leaves_no_half_program() -> None:
     control, handle = attached()
     unchanged(control, lambda: sent(handle, "\nO8\nG1X1.\nM30\n")[1], EW.EW_DATA)
@@ -79,6 +83,9 @@ def test_a_stream_that_is_cut_leaves_no_half_program() -> None:
     "fanuc.cnc_dwnstart.err.EW_BUSY",
     "fanuc.cnc_search.err.EW_BUSY",
 )
+@pytest.mark.covers("fanuc.concept.program_busy_conditions", "fanuc.concept.mode_matrix")
+@pytest.mark.covers("fanuc.mode.MDI")
+@pytest.mark.covers("fanuc.cnc_allclibhndl")
 def test_download_session() -> None:
     control, handle = attached()
     assert fwlib.cnc_download(handle, "\n", 1) == EW.EW_FUNC
@@ -100,6 +107,7 @@ def test_download_session() -> None:
 @pytest.mark.covers("fanuc.cnc_dwnend")
 @covers("cnc_download.err.EW_LENGTH", "range.download_number")
 @pytest.mark.covers("fanuc.cnc_download", "fanuc.cnc_dwnstart")
+@pytest.mark.covers("fanuc.concept.download_session")
 def test_a_piece_has_1_to_256_characters() -> None:
     control, handle = attached()
     long = "\nO7\n" + "X1234567\n" * 28
@@ -133,6 +141,13 @@ def test_a_piece_has_1_to_256_characters() -> None:
     ],
 )
 @pytest.mark.covers("fanuc.cnc_download", "fanuc.cnc_dwnend")
+@pytest.mark.covers(
+    "fanuc.format.download",
+    "fanuc.concept.download_session",
+    "fanuc.concept.tv_check",
+    "fanuc.concept.selected_program",
+    "fanuc.concept.program_number_range",
+)
 def test_streams_that_are_refused(stream: str) -> None:
     control, handle = attached()
     registered(control, O7="\nM30\n", O55="\nM30\n")
@@ -143,6 +158,10 @@ def test_streams_that_are_refused(stream: str) -> None:
 
 
 @pytest.mark.covers("fanuc.cnc_download", "fanuc.cnc_dwnstart")
+@pytest.mark.covers(
+    "fanuc.format.download", "fanuc.concept.download_session", "fanuc.concept.duplicate_program"
+)
+@pytest.mark.covers("fanuc.cnc_dwnend", "fanuc.cnc_dwnend.err.EW_DATA")
 def test_the_last_pieces_are_judged_at_the_end() -> None:
     control, handle = attached()
     assert fwlib.cnc_dwnstart(handle) == OK
@@ -167,6 +186,7 @@ def test_tv_check_counts_the_characters_of_a_block() -> None:
 
 
 @covers("ncparam.3201_2", "ncparam.3201_6")
+@pytest.mark.covers("fanuc.format.download", "fanuc.concept.duplicate_program")
 def test_parameters_of_registration() -> None:
     control, handle = attached()
     registered(control, O7="\nM30\n", O55="\nM30\n")
@@ -207,6 +227,7 @@ def test_a_full_memory() -> None:
 @covers("cnc_download.err.EW_RESET")
 @pytest.mark.parametrize("button", ["reset", "feed_hold"])
 @pytest.mark.covers("fanuc.cnc_download", "fanuc.cnc_dwnend", "fanuc.cnc_dwnstart")
+@pytest.mark.covers("fanuc.concept.download_session")
 def test_reset_and_stop_end_a_download(button: str) -> None:
     control, handle = attached()
     assert fwlib.cnc_dwnstart(handle) == OK
@@ -234,6 +255,7 @@ def test_a_download_never_answers_that_a_buffer_is_full() -> None:
 @covers("concept.no_nul_termination")
 @pytest.mark.covers("fanuc.ODBUP.data")
 @pytest.mark.covers("fanuc.struct.ODBUP")
+@pytest.mark.covers("fanuc.PERCENT", "fanuc.LF", "fanuc.concept.upload_session")
 def test_example_upload_in_pieces() -> None:
     _, handle = attached()
     assert sent(handle, FORMAT) == (OK, OK)
@@ -252,6 +274,9 @@ def test_example_upload_in_pieces() -> None:
 @pytest.mark.covers("fanuc.cnc_upend", "fanuc.cnc_upstart")
 @covers("example.cnc_upload")
 @pytest.mark.covers("fanuc.cnc_upload")
+@pytest.mark.covers(
+    "fanuc.concept.no_nul_termination", "fanuc.PERCENT", "fanuc.format.upload", "fanuc.concept.upload_session"
+)
 def test_example_upload_loop_until_the_percent() -> None:
     _, handle = attached()
     assert sent(handle, *PIECES) == (OK, OK)
@@ -274,6 +299,8 @@ def test_example_upload_loop_until_the_percent() -> None:
     "cnc_upload.err.EW_LENGTH", "cnc_upend.err.EW_FUNC",
 )  # fmt: skip
 @pytest.mark.covers("fanuc.cnc_upstart")
+@pytest.mark.covers("fanuc.format.upload", "fanuc.concept.program_busy_conditions")
+@pytest.mark.covers("fanuc.cnc_allclibhndl")
 def test_upload_session() -> None:
     control, handle = attached()
     assert sent(handle, FORMAT) == (OK, OK)
@@ -318,6 +345,7 @@ def _memory(*, selected: int = 201, **keys: object) -> tuple[PowerMate, int]:
     "fanuc.cnc_statinfo",
     "fanuc.cnc_upload.err.EW_FUNC",
 )
+@pytest.mark.covers("fanuc.concept.download_session", "fanuc.concept.upload_session")
 def test_transfers_end_with_the_power() -> None:
     control, handle = attached()
     registered(control, O7="\nG4X7.\nM30\n")
@@ -336,6 +364,7 @@ def test_transfers_end_with_the_power() -> None:
     "concept.selected_program", "example.cnc_search", "cnc_search.err.EW_DATA",
 )  # fmt: skip
 @pytest.mark.covers("fanuc.cnc_rdprgnum")
+@pytest.mark.covers("fanuc.concept.mode_matrix")
 def test_search_selects_in_mem_and_edit_only() -> None:
     control, handle = _memory()
     for mode in ("MEM", "EDIT"):
@@ -354,6 +383,10 @@ def test_search_selects_in_mem_and_edit_only() -> None:
 
 
 @covers("cnc_delete", "example.cnc_delete", "cnc_delete.err.EW_DATA")
+@pytest.mark.covers(
+    "fanuc.concept.program_busy_conditions", "fanuc.concept.mode_matrix", "fanuc.concept.selected_program"
+)
+@pytest.mark.covers("fanuc.mode.OTHER")
 def test_delete_takes_one_program_in_any_mode_but_mdi() -> None:
     control, handle = _memory()
     assert fwlib.cnc_delete(handle, 12) == OK  # in MEM
@@ -366,6 +399,14 @@ def test_delete_takes_one_program_in_any_mode_but_mdi() -> None:
 
 @pytest.mark.covers("fanuc.cnc_rdprgnum")
 @covers("cnc_delall", "example.cnc_delall")
+@pytest.mark.covers(
+    "fanuc.concept.write_protection_programs",
+    "fanuc.concept.program_busy_conditions",
+    "fanuc.concept.mode_matrix",
+    "fanuc.concept.selected_program",
+    "fanuc.ncparam.3202_0",
+)
+@pytest.mark.covers("fanuc.mode.EDIT")
 def test_delall_takes_every_program_and_the_selection() -> None:
     control, handle = _memory()
     control.select_mode("EDIT")
@@ -390,6 +431,10 @@ def _background(control: PowerMate, handle: int) -> None:
     control.programs.edit(9001, background=True)
 
 
+def _foreground(control: PowerMate, handle: int) -> None:
+    control.programs.edit(9001)
+
+
 def _download(control: PowerMate, handle: int) -> None:
     assert fwlib.cnc_dwnstart(handle) == OK
 
@@ -404,6 +449,31 @@ def _alarm_000(control: PowerMate, handle: int) -> None:
 
 def _alarm_101(control: PowerMate, handle: int) -> None:
     control.raise_alarm(101)
+
+
+def _alarm_100(control: PowerMate, handle: int) -> None:
+    control.raise_alarm(100)
+
+
+def _uploading(control: PowerMate, handle: int) -> None:
+    assert fwlib.cnc_upstart(handle, 200) == OK
+
+
+def _waits(control: PowerMate, word: str) -> None:
+    registered(control, O300=f"\n{word}\nM30\n")
+    control.optional_stop()
+    running(control, 300)
+    control.advance(500)
+    assert control.control.channel_status().interrupted
+    control.select_mode("EDIT")
+
+
+def _program_stop(control: PowerMate, handle: int) -> None:
+    _waits(control, "M0")
+
+
+def _optional_stop(control: PowerMate, handle: int) -> None:
+    _waits(control, "M1")
 
 
 def _mdi(control: PowerMate, handle: int) -> None:
@@ -430,13 +500,18 @@ def _key(control: PowerMate, handle: int) -> None:
 BUSY, PROT = EW.EW_BUSY, EW.EW_PROT
 MATRIX: list[tuple[Callable[[PowerMate, int], None], dict[str, EW]]] = [
     (_background, {"dwnstart": BUSY, "delete": BUSY, "delall": BUSY}),
+    (_foreground, {"delall": BUSY}),
     (_download, {"dwnstart": BUSY, "search": BUSY, "delete": BUSY, "delall": BUSY}),
     (_compare, {"dwnstart": BUSY, "delete": BUSY, "delall": BUSY}),
     (_alarm_000, dict.fromkeys(CALLS, BUSY)),
     (_alarm_101, dict.fromkeys(CALLS, BUSY)),
+    (_alarm_100, {}),
+    (_uploading, {"upstart": BUSY}),
     (_mdi, {"dwnstart": BUSY, "delete": BUSY, "delall": BUSY}),
     (_mem, {"delall": BUSY}),
     (_running, {"search": BUSY, "delete": BUSY, "delall": BUSY}),
+    (_program_stop, {"search": BUSY, "delete": BUSY, "delall": BUSY}),
+    (_optional_stop, {"search": BUSY, "delete": BUSY, "delall": BUSY}),
     (_key, {"dwnstart": PROT, "delete": PROT, "delall": PROT}),
 ]
 
@@ -450,6 +525,14 @@ MATRIX: list[tuple[Callable[[PowerMate, int], None], dict[str, EW]]] = [
 @pytest.mark.parametrize("call", CALLS)
 @pytest.mark.parametrize(("state", "answers"), [pytest.param(*each, id=each[0].__name__) for each in MATRIX])
 @pytest.mark.covers("fanuc.cnc_delall", "fanuc.cnc_delete", "fanuc.cnc_dwnstart", "fanuc.cnc_search")
+@pytest.mark.covers(
+    "fanuc.concept.download_session",
+    "fanuc.concept.upload_session",
+    "fanuc.concept.write_protection_programs",
+    "fanuc.concept.mode_matrix",
+    "fanuc.concept.selected_program",
+)
+@pytest.mark.covers("fanuc.mode.EDIT", "fanuc.mode.MDI", "fanuc.enum.search.foreground")
 def test_refusal_matrix(state: Callable[[PowerMate, int], None], answers: dict[str, EW], call: str) -> None:
     control, handle = _memory()
     control.select_mode("EDIT")
@@ -463,6 +546,9 @@ def test_refusal_matrix(state: Callable[[PowerMate, int], None], answers: dict[s
 
 @covers("cnc_delete.err.EW_BUSY")
 @pytest.mark.covers("fanuc.cnc_delete", "fanuc.cnc_search")
+@pytest.mark.covers(
+    "fanuc.concept.program_busy_conditions", "fanuc.concept.op_signal", "fanuc.concept.selected_program"
+)
 def test_the_selected_program_is_not_deleted() -> None:
     control, handle = _memory()
     unchanged(control, lambda: fwlib.cnc_delete(handle, 201), EW.EW_BUSY)
@@ -471,6 +557,10 @@ def test_the_selected_program_is_not_deleted() -> None:
 
 
 @pytest.mark.covers("fanuc.cnc_delete", "fanuc.cnc_search")
+@pytest.mark.covers("fanuc.concept.program_busy_conditions", "fanuc.concept.op_signal")
+@pytest.mark.covers(
+    "fanuc.cnc_delall", "fanuc.cnc_delall.err.EW_BUSY", "fanuc.mode.OTHER", "fanuc.enum.search.background"
+)
 def test_in_other_modes_than_edit_and_mem_the_op_signal_does_not_matter() -> None:
     control, handle = _memory()
     _running(control, handle)
@@ -490,11 +580,14 @@ def test_in_other_modes_than_edit_and_mem_the_op_signal_does_not_matter() -> Non
     [
         (3202, 1, (8000, 8999), (7999, 9000)),
         (3202, 16, (9000, 9999), (8999, 7)),
+        (3202, 0xEF, (8001, 8500), (7999, 9999)),  # the other bits say nothing of programs
+        (3202, 0xFE, (9001, 9998), (8000, 1)),
         (3210, 55, (9000, 9001), (8999, 1)),
     ],
 )
 @pytest.mark.covers("fanuc.cnc_delete")
 @pytest.mark.covers("fanuc.cnc_download", "fanuc.cnc_dwnend")
+@pytest.mark.covers("fanuc.concept.program_number_range")
 def test_parameters_protect_programs(
     parameter: int, value: int, guarded: tuple[int, int], free: tuple[int, int]
 ) -> None:
@@ -519,6 +612,8 @@ def test_parameters_protect_programs(
 
 @covers("ncparam.3290_7")
 @pytest.mark.covers("fanuc.cnc_delete")
+@pytest.mark.covers("fanuc.concept.write_protection_programs", "fanuc.concept.protect_key")
+@pytest.mark.covers("fanuc.cnc_delete.err.EW_PROT", "fanuc.cnc_dwnstart", "fanuc.cnc_dwnstart.err.EW_PROT")
 def test_which_key_protects_programs() -> None:
     control, handle = _memory()
     control.protect_key(key=1)
@@ -533,6 +628,8 @@ def test_which_key_protects_programs() -> None:
 
 
 @pytest.mark.covers("fanuc.cnc_download")
+@pytest.mark.covers("fanuc.concept.compare_running")
+@pytest.mark.covers("fanuc.cnc_dwnend")
 def test_a_comparison_tells_whether_programs_are_the_same_and_changes_nothing() -> None:
     control, handle = attached()
     assert sent(handle, FORMAT) == (OK, OK)

@@ -119,6 +119,7 @@ _BEYOND = {
         for name, number in CODES.items()
     ],
 )
+@pytest.mark.covers("fanuc.concept.return_convention")
 def test_return_codes(name: str, number: int) -> None:
     code = getattr(fwlib, f"EW_{name}")
     assert code is fwlib.EW[f"EW_{name}"]
@@ -215,6 +216,7 @@ def _place(cls: Any, path: str) -> tuple[int, int]:
         for path in paths
     ],
 )
+@pytest.mark.covers("fanuc.concept.c_types", "fanuc.concept.struct_packing", "fanuc.common.types")
 def test_elements_lie_where_the_manual_shows_them(struct: str, path: str) -> None:
     assert _place(getattr(fwlib, struct), path) == LAYOUTS[struct][1][path]
     printed = ROWS[f"fanuc.{struct}.{path}"].signature
@@ -225,6 +227,7 @@ def test_elements_lie_where_the_manual_shows_them(struct: str, path: str) -> Non
 @pytest.mark.parametrize(
     "struct", [pytest.param(struct, marks=covers(f"struct.{struct}"), id=struct) for struct in LAYOUTS]
 )
+@pytest.mark.covers("fanuc.concept.struct_packing", "fanuc.common.types")
 def test_structures_have_the_manuals_size_and_elements(struct: str) -> None:
     size, paths = LAYOUTS[struct]
     layout = fwlib.STRUCTURES[struct]
@@ -237,6 +240,7 @@ def test_structures_have_the_manuals_size_and_elements(struct: str) -> None:
 
 
 @covers("concept.c_types")
+@pytest.mark.covers("fanuc.common.types")
 def test_c_types_are_little_endian_and_signed() -> None:
     assert fwlib.ODBACT(data=-2).pack() == b"\0\0\0\0\xfe\xff\xff\xff"
     assert fwlib.ODBPRO(data=9876).pack()[4:6] == (9876).to_bytes(2, "little")
@@ -276,6 +280,7 @@ def test_nothing_is_aligned_to_four_bytes_but_lengths_of_that_packing_are_taken(
 
 
 @pytest.mark.covers("fanuc.cnc_rddynamic", "fanuc.cnc_rddynamic.err.EW_LENGTH")
+@pytest.mark.covers("fanuc.MAX_AXIS", "fanuc.common.MAX_AXIS2")
 def test_a_power_mate_d_has_two_axes_in_its_structures() -> None:
     _, handle = attached(model="D")
     code, dynamic = fwlib.cnc_rddynamic(handle, -1, 22 + 16 * 2)

@@ -86,6 +86,8 @@ def test_a_diagnosis_value_of_each_kind(
 @pytest.mark.covers("fanuc.ODBDGN.type")
 @pytest.mark.covers("fanuc.cnc_diagnoss.err.EW_LENGTH")
 @pytest.mark.covers("fanuc.ODBDGN")
+@pytest.mark.covers("fanuc.common.ALL_AXES2")
+@pytest.mark.covers("fanuc.diag.kind.2word_axis")
 def test_all_axes_at_once() -> None:
     control, library, handle = moving()
     control.advance(8000)
@@ -107,12 +109,14 @@ def test_all_axes_at_once() -> None:
         (301, -2, "EW_ATTRIB"),
     ),
 )
+@pytest.mark.covers("fanuc.diag.axis.0", "fanuc.diag.axis.1..m")
 def test_a_diagnosis_is_refused(number: int, axis: int, code: str) -> None:
     library, handle = at(PowerMate())
     assert library.cnc_diagnoss(handle, number, axis, 28)[0] is EW[code]
 
 
 @pytest.mark.covers("fanuc.cnc_diagnoss", "fanuc.cnc_diagnoss.err.EW_LENGTH")
+@pytest.mark.covers("fanuc.concept.length_argument")
 def test_a_diagnosis_needs_its_length() -> None:
     library, handle = at(PowerMate())  # with three axes
     for number, axis, size in (
@@ -151,6 +155,10 @@ def test_an_entry_of_a_range(number: int, axis: int, kind: int, length: int) -> 
 
 
 @pytest.mark.covers("fanuc.cnc_diagnosr")
+@pytest.mark.covers("fanuc.diag.padding")
+@pytest.mark.covers(
+    "fanuc.diag.type_attr.0", "fanuc.diag.type_attr.1", "fanuc.diag.type_attr.2", "fanuc.diag.type_attr.3"
+)
 def test_a_range_of_diagnosis_numbers() -> None:
     _, library, handle = arranged("byte_axis")
     code, first, last, used, data = library.cnc_diagnosr(handle, 25, -1, 250, 99)
@@ -158,6 +166,7 @@ def test_a_range_of_diagnosis_numbers() -> None:
     numbers = [int.from_bytes(data[k : k + 2], "little") for k in (0, 6, 14, 24, 34, 50)]
     assert numbers == [30, 31, 200, 201, 202, 203]
     assert data[:6] == b"\x1e\0\0\2\xad\0"
+    assert [data[k + 3] for k in (0, 6, 14, 24, 34, 50)] == [2, 3, 0, 1, 2, 1]  # the kinds
     assert data[14:24] == b"\xc8\0\xff\0\0\x10\0\0\0\0"
     assert data[34:50] == b"\xca\0\xff\2" + b"\x58\2\xe8\3\xe8\3" + bytes(6)
 
@@ -205,6 +214,7 @@ MACRO = {"IS-A": (3, 4), "IS-B": (3, 4), "IS-C": (4, 5)}
         for system, row in AXIS.items()
     ],
 )  # fmt: skip
+@pytest.mark.covers("fanuc.param.1004_0", "fanuc.param.1004_1")
 def test_figures_of_axes(system: str, mm: int, inch: int, degree: int) -> None:
     for inch_input in (False, True):
         for inch_output in (False, True):
@@ -233,6 +243,13 @@ def test_figures_of_axes(system: str, mm: int, inch: int, degree: int) -> None:
     ],
 )  # fmt: skip
 @pytest.mark.covers("fanuc.cnc_getfigure")
+@pytest.mark.covers(
+    "fanuc.concept.decimal_point",
+    "fanuc.param.1004_0",
+    "fanuc.param.1004_1",
+    "fanuc.concept.increment_system",
+)
+@pytest.mark.covers("fanuc.units.IS_A", "fanuc.units.IS_B", "fanuc.units.IS_C")
 def test_figures_of_tool_offsets_and_macro_variables(
     kind: int, digits: int, system: str, mm: int, inch: int
 ) -> None:
@@ -244,10 +261,16 @@ def test_figures_of_tool_offsets_and_macro_variables(
 
 @pytest.mark.covers("fanuc.cnc_getfigure")
 @pytest.mark.covers("fanuc.param.1004_0", "fanuc.param.1004_1", "fanuc.cnc_getfigure.err.EW_ATTRIB")
+@pytest.mark.covers(
+    "fanuc.concept.decimal_point",
+    "fanuc.ncparam.1004_0",
+    "fanuc.ncparam.1004_1",
+    "fanuc.concept.increment_system",
+)
 def test_the_increment_system_is_a_parameter() -> None:
     control = PowerMate()
     library, handle = at(control)
-    for bits, decimals in ((1, 2), (2, 4), (0, 3)):
+    for bits, decimals in ((1, 2), (2, 4), (0, 3), (0x80 | 2, 4), (0x40 | 1, 2), (0xFC, 3)):
         control.parameters.set(1004, bits)
         control.power_cycle()
         assert library.cnc_getfigure(handle, 0)[2][0] == decimals
@@ -306,6 +329,7 @@ def test_the_manuals_program_prints_the_message() -> None:
     control.operator_message(999, "AND ANOTHER")
     code, count, messages = library.cnc_rdopmsg3(handle, -1, 5)
     assert (code, count, [each.datano for each in messages]) == (0, 2, [100, 999])
+    assert printed()[:4] == "0100"  # the first one
 
 
 @pytest.mark.covers("fanuc.cnc_rdopmsg")
@@ -326,6 +350,7 @@ def test_the_manuals_program_prints_the_message() -> None:
         (0, 262, ("external_message", "external_data_input"), "EW_OK"),
     ],
 )  # fmt: skip
+@pytest.mark.covers("fanuc.common.allmode")
 def test_messages_are_refused(kind: int, length: int, options: Any, code: str) -> None:
     control = PowerMate(options=options)
     control.operator_message(2001, "DOOR")
@@ -333,6 +358,9 @@ def test_messages_are_refused(kind: int, length: int, options: Any, code: str) -
     assert library.cnc_rdopmsg(handle, kind, length)[0] is EW[code]
 
 
+@pytest.mark.covers("fanuc.diag.kind.byte", "fanuc.diag.kind.byte_axis")
+@pytest.mark.covers("fanuc.diag.axis.1..m")
+@pytest.mark.covers("fanuc.cnc_diagnoss")
 def test_what_moves_is_told_of_each_axis() -> None:
     control, library, handle = moving("G1 X90. Y-45. F1200\nG4 X3.\nM30")
 
@@ -347,6 +375,7 @@ def test_what_moves_is_told_of_each_axis() -> None:
 
 
 @pytest.mark.covers("fanuc.cnc_diagnoss")
+@pytest.mark.covers("fanuc.diag.kind.bit", "fanuc.diag.kind.byte_axis")
 def test_what_moves_by_hand_and_what_stops_is_told() -> None:
     control = PowerMate()
     library, handle = at(control)

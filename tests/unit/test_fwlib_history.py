@@ -94,6 +94,7 @@ def test_histories_are_read_while_sampling_is_stopped() -> None:
     library.cnc_stopophis(handle)
     assert codes() == [EW.EW_OK] * 4
     control.raise_alarm(700)
+    control.history.press_key(0x41)
     assert (library.cnc_rdophisno(handle)[1], library.cnc_rdalmhisno(handle)[1]) == (2, 2)
     library.cnc_startophis(handle)
     assert codes() == [EW.EW_FUNC] * 4
@@ -101,6 +102,13 @@ def test_histories_are_read_while_sampling_is_stopped() -> None:
     library.cnc_stopophis(handle)
     assert (library.cnc_rdophisno(handle)[1], library.cnc_rdalmhisno(handle)[1]) == (3, 3)
     assert [each.alm_no for each in library.cnc_rdalmhistry(handle, 1, 3, 150)[1].alm_his] == [85, 417, 5011]
+    library.cnc_startophis(handle)
+    for number in range(401, 417):
+        control.raise_alarm(number)
+        control.history.press_key(number - 400)
+    library.cnc_stopophis(handle)
+    assert (library.cnc_rdophisno(handle)[1], library.cnc_rdalmhisno(handle)[1]) == (3 + 2 * 16, 3 + 16)
+    assert library.cnc_rdalmhistry(handle, 19, 19, 54)[1].alm_his[0].alm_no == 416
 
 
 # ---------------------------------------------------------------------- operation records
@@ -110,6 +118,7 @@ def test_histories_are_read_while_sampling_is_stopped() -> None:
 @pytest.mark.covers("fanuc.ODBHIS.rec_mdi", "fanuc.ODBHIS.rec_type", "fanuc.ODBHIS.rec_mdi.dummy")
 @pytest.mark.covers("fanuc.ODBHIS.key_code", "fanuc.ODBHIS.pw_flag")
 @pytest.mark.covers("fanuc.ODBHIS")
+@pytest.mark.covers("fanuc.concept.history_protocol")
 def test_a_key() -> None:
     control, library, handle = fresh()
     control.history.press_key(ord("G"))
@@ -125,6 +134,27 @@ def monitored(library: Any, handle: int, *entries: tuple[int, int, int, int]) ->
     for each, (entry, name, address, mask) in zip(sig.data, entries, strict=False):
         each.ent_no, each.sig_name, each.sig_no, each.mask_pat = entry, name, address, mask
     return EW(library.cnc_wrhissgnl(handle, sig))
+
+
+@pytest.mark.covers(*(f"fanuc.IODBSIG.sig_name.{number}" for number in (1, 2, 3)))
+@pytest.mark.covers(*(f"fanuc.ODBHIS.sig_name.{number}" for number in (1, 2, 3)), "fanuc.ODBHIS.sig_no")
+@pytest.mark.covers("fanuc.cnc_wrhissgnl", "fanuc.IODBSIG.data.mask_pat", "fanuc.ODBHIS.rec_sgn")
+def test_signals_beyond_1000_and_several_of_one_letter_are_noted() -> None:
+    control, library, handle = fresh()
+    chosen = ((1, 1, 1003, 0x0F), (2, 2, 1200, 0x80), (3, 3, 1063, 0xFF), (4, 1, 127, 0x01))
+    assert monitored(library, handle, *chosen) is EW.EW_OK
+    control.pmc.set_input(1003, 0x71)
+    control.pmc.set_input(1003, 0xF1)  # outside the mask
+    control.pmc.set_input(127, 0x83)
+    control.pmc.set_input(3, 0xFF)  # not chosen
+    control.pmc.write("G", 1200, b"\xc4")
+    control.pmc.write("Y", 1063, b"\x06")
+    assert operations(library, handle) == [
+        bytes((1, 0, 1, 0, 0x71, 0, 0xEB, 3)),
+        bytes((1, 0, 1, 0, 0x83, 0, 127, 0)),
+        bytes((1, 0, 2, 0, 0xC4, 0, 0xB0, 4)),
+        bytes((1, 0, 3, 0, 0x06, 0, 0x27, 4)),
+    ]
 
 
 @pytest.mark.parametrize(
@@ -146,6 +176,7 @@ def monitored(library: Any, handle: int, *entries: tuple[int, int, int, int]) ->
     "fanuc.concept.history_record_kinds",
 )
 @pytest.mark.covers("fanuc.IODBSIG", "fanuc.ODBHIS", "fanuc.ODBHIS.rec_type")
+@pytest.mark.covers("fanuc.concept.history_protocol")
 def test_the_change_of_a_signal(letter: str, number: int) -> None:
     control, library, handle = fresh()
     address = 3 if letter == "F" else 44
@@ -160,6 +191,16 @@ def test_the_change_of_a_signal(letter: str, number: int) -> None:
         else:
             control.pmc.write(letter, address, bytes([value]))
 
+    if letter == "Y":  # bit 7 is a bit as any other
+        change(0x92)
+        change(0x6C)
+        records = operations(library, handle)
+        assert records == [
+            bytes((1, 0, number, 0, 0x92, 0, 44, 0)),
+            bytes((1, 0, number, 0x92, 0x6C, 0, 44, 0)),
+        ]
+        change(0)
+        library.cnc_clearophis(handle, 0)
     change(0x12)
     change(0x28)
     change(0x29)
@@ -198,6 +239,7 @@ def test_the_change_of_a_signal(letter: str, number: int) -> None:
     "fanuc.concept.history_record_kinds",
 )
 @pytest.mark.covers("fanuc.ODBHIS", "fanuc.ODBHIS.rec_type")
+@pytest.mark.covers("fanuc.concept.history_protocol")
 def test_an_alarm(bit: int, number: int) -> None:
     control, library, handle = fresh()
     numbers = (number, *ENDS.get(bit, ()))
@@ -236,6 +278,7 @@ def test_unused_alarm_groups_never_appear() -> None:
     "fanuc.concept.history_record_kinds",
 )
 @pytest.mark.covers("fanuc.ODBHIS")
+@pytest.mark.covers("fanuc.concept.history_protocol")
 def test_power_on_notes_date_and_time() -> None:
     control, library, handle = fresh()
     control.power_cycle()
@@ -245,6 +288,7 @@ def test_power_on_notes_date_and_time() -> None:
 @pytest.mark.covers("fanuc.cnc_rdophistry")
 @pytest.mark.covers("fanuc.ODBHIS.s_no", "fanuc.ODBHIS.e_no")
 @pytest.mark.covers("fanuc.ODBHIS")
+@pytest.mark.covers("fanuc.cnc_stopophis")
 def test_fewer_records_than_asked_for() -> None:
     control, library, handle = fresh()
     for code in (65, 66, 67):
@@ -318,6 +362,10 @@ def test_an_alarm_record_byte_by_byte() -> None:
     "fanuc.cnc_clearophis.slct.1",
     "fanuc.cnc_clearophis.err.EW_ATTRIB",
 )
+@pytest.mark.covers("fanuc.concept.history_protocol")
+@pytest.mark.covers(
+    "fanuc.cnc_stopophis", "fanuc.cnc_rdophisno", "fanuc.cnc_rdalmhisno", "fanuc.cnc_startophis"
+)
 def test_one_history_is_cleared_alone() -> None:
     control, library, handle = fresh()
 
@@ -361,6 +409,15 @@ def test_the_table_has_twenty_entries_and_keeps_those_not_named() -> None:
     assert found == [(k, *{3: (1, 12, 0x7F), 20: (4, 7, 0xFF)}.get(k, (0, 0, 0))) for k in range(1, 21)]
     monitored(library, handle, (3, 0, 12, 0x7F))
     assert library.cnc_rdhissgnl(handle)[1].data[2].sig_name == 0
+    full = [(k, 1 + k % 4, 5 + k, 0x80 + k) for k in range(1, 21)]
+    assert monitored(library, handle, *full) is EW.EW_OK  # 20 are as many as there can be
+    code, sig = library.cnc_rdhissgnl(handle)
+    assert [(each.ent_no, each.sig_name, each.sig_no, each.mask_pat) for each in sig.data] == full
+    some = fwlib.IODBSIG(type=1)
+    for each, entry in zip(some.data, (6, 9), strict=False):
+        each.ent_no = entry
+    assert library.cnc_wrhissgnl(handle, some) == 0  # one is taken from the table
+    assert [each.ent_no for each in library.cnc_rdhissgnl(handle)[1].data if not each.sig_name] == [6]
 
 
 @pytest.mark.covers("fanuc.cnc_rdhissgnl")
@@ -391,16 +448,19 @@ def test_addresses_that_can_be_watched(letter: str, good: tuple[int, ...], bad: 
 
 @pytest.mark.covers("fanuc.cnc_rdhissgnl", "fanuc.cnc_wrhissgnl")
 @pytest.mark.covers("fanuc.cnc_wrhissgnl.err.EW_ATTRIB")
+@pytest.mark.covers("fanuc.IODBSIG.data.ent_no")
 def test_a_wrong_table_is_refused_whole() -> None:
     _, library, handle = fresh()
     for count in (0, 21, -1):
         assert library.cnc_wrhissgnl(handle, fwlib.IODBSIG(type=count)) is EW.EW_ATTRIB
     assert monitored(library, handle, (4, 2, 9, 1), (21, 2, 9, 1)) is EW.EW_DATA
+    assert monitored(library, handle, (4, 2, 9, 1), (0, 2, 9, 1)) is EW.EW_DATA
     assert monitored(library, handle, (4, 2, 9, 1), (5, 5, 9, 1)) is EW.EW_DATA
     assert all(each.sig_name == 0 for each in library.cnc_rdhissgnl(handle)[1].data)
 
 
 @pytest.mark.covers("fanuc.cnc_rdhissgnl")
+@pytest.mark.covers("fanuc.concept.history_protocol")
 def test_histories_and_table_outlast_switching_off(tmp_path: Path) -> None:
     control, library, handle = fresh(memory=tmp_path / "memory")
     monitored(library, handle, (11, 3, 1007, 0x18))

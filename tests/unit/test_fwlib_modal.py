@@ -56,6 +56,8 @@ def test_program_of_the_manual() -> None:
 
 
 @pytest.mark.parametrize("inch", [False, True])
+@pytest.mark.covers("fanuc.param.0000_2")
+@pytest.mark.covers("fanuc.modal.G.5.0", "fanuc.modal.G.5.1")
 def test_the_unit_at_power_on_is_that_of_the_setting(inch: bool) -> None:
     library, handle, control = executing("G1 X1. F40.", "G1", inch_input=inch)
     assert g(library, handle, 5, 0) == (0 if inch else 1)
@@ -100,6 +102,16 @@ def test_a_code_has_its_number_and_stays_in_force(group: int, value: int, text: 
     assert g(library, handle, group, 1) == value
     _, every = library.cnc_modal(handle, -1, 0)
     assert every.modal.g_rdata[group] == value | 0x80
+    line = next(each for each in text.split("\n") if each.startswith(words))
+    for begin, block in (("G4 P90", 2), ("G4 P80", 1)):  # in a block that comes next
+        library, handle, _ = executing(f"G4 P90\nG4 P80\n{line}\n{extra}", begin)
+        before = g(library, handle, group)
+        assert before & 0x80 == 0
+        assert g(library, handle, group, block) == value | 0x80
+        if block == 2:
+            assert g(library, handle, group, 1) == before
+        else:
+            assert g(library, handle, group, 2) == value
 
 
 def _executes(control: PowerMate, block: str) -> bool:
@@ -268,6 +280,7 @@ def test_words_of_the_axes(number: int, value: int) -> None:
 )  # fmt: skip
 @pytest.mark.covers("fanuc.ODBMDL.aux.flag2")
 @pytest.mark.covers("fanuc.ODBMDL", "fanuc.ODBMDL.aux")
+@pytest.mark.covers("fanuc.cnc_modal")
 def test_what_is_known_about_a_word() -> None:
     library, handle, _ = executing("G1 X-12.5 F812.25\nY3.\nF60 X-20.", "G1")
 
@@ -279,7 +292,17 @@ def test_what_is_known_about_a_word() -> None:
     assert flags(122, 0) == (0x80 | 0x20 | 3, 0)
     assert flags(103, 1) == (0x40 | 5, 2)
     assert flags(122, 1) == (0x20 | 3, 0)
+    assert (flags(123, 0), flags(123, 1)) == ((0, 0), (0x80 | 1, 0))
     assert flags(103, 2) == (0x80 | 2, 0)
+    library, handle, _ = executing("G1 X-12345.678 F1.23456", "G1")  # 8 digits, 5 decimals
+    assert flags(122, 0) == (0x80 | 0x20 | 8, 0)
+    assert flags(103, 0) == (0x80 | 0x40 | 6, 5)
+    library, handle, _ = executing("G1 X12.5 Y-7. Z-.25 F812.25", "G1")
+    assert [flags(address, 0)[0] for address in (122, 123, 124)] == [
+        0x80 | 3,
+        0x80 | 0x20 | 1,
+        0x80 | 0x20 | 2,
+    ]
 
 
 @pytest.mark.covers("fanuc.cnc_modal")
@@ -289,21 +312,23 @@ def test_digits_of_m_are_those_of_the_parameter() -> None:
     assert library.cnc_modal(handle, 106, 0)[1].modal.aux.flag1 == 0x80 | 3
     control.parameters.set(3030, 5)
     assert library.cnc_modal(handle, 106, 0)[1].modal.aux.flag1 == 0x80 | 5
+    for address in (125, 126):  # the second and third M code of a block
+        assert library.cnc_modal(handle, address, 0)[1].modal.aux.flag1 == 5
 
 
 @pytest.mark.parametrize(
     ("kind", "block", "code"),
     [
-        pytest.param(21, 0, "EW_NUMBER", marks=pytest.mark.covers("fanuc.cnc_modal.err.EW_NUMBER")),
+        (21, 0, "EW_NUMBER"),
         (99, 0, "EW_NUMBER"),
         (127, 1, "EW_NUMBER"),
         (206, 0, "EW_NUMBER"),
         (-4, 0, "EW_NUMBER"),
-        pytest.param(3, 3, "EW_ATTRIB", marks=pytest.mark.covers("fanuc.cnc_modal.err.EW_ATTRIB")),
+        (3, 3, "EW_ATTRIB"),
         (100, -1, "EW_ATTRIB"),
     ],
 )
-@pytest.mark.covers("fanuc.cnc_modal")
+@pytest.mark.covers("fanuc.cnc_modal", "fanuc.cnc_modal.err.EW_ATTRIB", "fanuc.cnc_modal.err.EW_NUMBER")
 def test_modal_data_are_refused(kind: int, block: int, code: str) -> None:
     control = PowerMate()
     session = fwlib.Session()

@@ -43,6 +43,8 @@ def buffers(library: Any, handle: int) -> list[list[int]]:
 @pytest.mark.covers("fanuc.ODBPOS.idata", "fanuc.ODBPOS.ldata")
 @pytest.mark.covers("fanuc.cnc_absolute", "fanuc.cnc_finstate")
 @pytest.mark.covers("fanuc.ODBPOS")
+@pytest.mark.covers("fanuc.concept.direct_command")
+@pytest.mark.covers("fanuc.ODBEXEC.EMNT11")
 def test_absolute_motion_of_the_manual() -> None:
     control = PowerMate()
     control.programs.memory.create("O0004", b"O0004\nG0 X10. Y10.\n")
@@ -63,6 +65,9 @@ def test_absolute_motion_of_the_manual() -> None:
 
 
 @pytest.mark.covers("fanuc.example.cnc_incpoint", "fanuc.cnc_incpoint")
+@pytest.mark.covers("fanuc.concept.direct_command", "fanuc.ODBPOS.unit.linear_mm")
+@pytest.mark.covers("fanuc.nmod.0")
+@pytest.mark.covers("fanuc.cnc_abspoint")
 def test_incremental_motion_of_the_manual() -> None:
     control = PowerMate()
     library, handle = at(control)
@@ -74,6 +79,8 @@ def test_incremental_motion_of_the_manual() -> None:
 
 
 @pytest.mark.covers("fanuc.example.cnc_refpoint", "fanuc.cnc_refpoint")
+@pytest.mark.covers("fanuc.concept.direct_command")
+@pytest.mark.covers("fanuc.cnc_abspoint")
 def test_reference_return_of_the_manual() -> None:
     control = PowerMate()
     library, handle = at(control)
@@ -100,6 +107,8 @@ def test_reference_return_of_the_manual() -> None:
             {"rotary": (1,)}, 12345, "A", 0.001, marks=pytest.mark.covers("fanuc.ODBPOS.unit.rotary")
         ),
         ({}, 12345, "X", 0.001),
+        ({"inch_output": True, "rotary": (2,)}, 23456, "A", 0.001),  # each axis has its own
+        ({"inch_output": True, "rotary": (1,)}, -9876, "X", 25.4e-4),
     ],
 )
 @pytest.mark.covers("fanuc.cnc_incpoint")
@@ -107,13 +116,15 @@ def test_reference_return_of_the_manual() -> None:
 def test_units_of_positions(more: dict[str, Any], value: int, axis: str, unit: float) -> None:
     control = PowerMate(**more)
     library, handle = at(control)
-    assert library.cnc_incpoint(handle, 2, 0, 1, 3000, idb((1, value)))[0] == 0
+    number = control.units.axis_names.index(axis) + 1
+    assert library.cnc_incpoint(handle, 2, 0, 1, 3000, idb((number, value)))[0] == 0
     control.advance(3000)
-    assert control.status().axes[control.units.axis_name(1)].machine == pytest.approx(value * unit, abs=1e-9)
+    assert control.status().axes[axis].machine == pytest.approx(value * unit, abs=1e-9)
 
 
 @pytest.mark.covers("fanuc.cnc_finstate", "fanuc.cnc_incpoint")
 @pytest.mark.covers("fanuc.cnc_dwell", "fanuc.concept.direct_command")
+@pytest.mark.covers("fanuc.nmod.1", "fanuc.ODBEXEC.EMNT13", "fanuc.ODBEXEC.EMNT23", "fanuc.ODBFIN.EMNT13")
 def test_a_dwell_keeps_its_path_waiting() -> None:
     control = PowerMate()
     library, handle = at(control)
@@ -130,10 +141,17 @@ def test_a_dwell_keeps_its_path_waiting() -> None:
     control.advance(round(0.03 / cycle_s))
     assert machine(control)[0] > 0
     assert library.cnc_finstate(handle)[1].cdata[2] == 4
+    library.cnc_dwell(handle, 5, 1, 2, idb((3, 300), (2, 700)))  # the longest one counts
+    control.advance(round(0.69 / cycle_s))
+    assert library.cnc_finstate(handle)[1].cdata[4] == 0
+    control.advance(round(0.02 / cycle_s))
+    assert library.cnc_finstate(handle)[1].cdata[4] == 16
 
 
 @pytest.mark.covers("fanuc.cnc_coordre")
 @pytest.mark.covers("fanuc.cnc_absolute")
+@pytest.mark.covers("fanuc.concept.direct_command")
+@pytest.mark.covers("fanuc.cnc_incpoint", "fanuc.cnc_abspoint")
 def test_setting_a_coordinate() -> None:
     control = PowerMate()
     library, handle = at(control)
@@ -146,6 +164,15 @@ def test_setting_a_coordinate() -> None:
     library.cnc_abspoint(handle, 1, 0, 1, 6000, idb((2, 52500)))
     control.advance(2000)
     assert machine(control) == [0, 5500, 0]
+    for value in (-900, 1200):  # each takes the place of the one before
+        library.cnc_coordre(handle, 1, 0, 1, idb((2, value)))
+        control.advance(1)
+        assert library.cnc_absolute(handle, 2, 8)[1].data[0] == value
+    library.cnc_incpoint(handle, 1, 0, 1, 6000, idb((2, -200)))
+    control.advance(500)
+    assert library.cnc_absolute(handle, -1, 28)[1].data[:3] == [0, 1000, -700]
+    control.power_cycle()
+    assert library.cnc_absolute(handle, -1, 28)[1].data[:3] == machine(control) == [0, 5300, 0]
 
 
 # ---------------------------------------------------------------------- buffers and flags
@@ -171,6 +198,8 @@ def test_setting_a_coordinate() -> None:
 @pytest.mark.covers(
     "fanuc.ODBEXEC", "fanuc.ODBFIN", "fanuc.cnc_abspoint", "fanuc.cnc_coordre", "fanuc.cnc_dwell"
 )
+@pytest.mark.covers("fanuc.concept.direct_command")
+@pytest.mark.covers("fanuc.nmod.0")
 def test_two_buffers_and_a_completion_flag_per_path(path: int) -> None:
     control = PowerMate()
     library, handle = at(control)
@@ -204,7 +233,25 @@ def test_two_buffers_and_a_completion_flag_per_path(path: int) -> None:
     assert list(library.cnc_finstate(handle)[1].cdata) == none
 
 
+@pytest.mark.covers("fanuc.concept.direct_command", "fanuc.cnc_incpoint", "fanuc.cnc_finstate")
+@pytest.mark.covers("fanuc.nmod.1", "fanuc.ODBFIN.EMNT12", "fanuc.ODBFIN.EMNT14", "fanuc.ODBFIN.EMNT15")
+def test_an_axis_belongs_to_the_path_that_moves_it() -> None:
+    control = PowerMate()
+    library, handle = at(control)
+    library.cnc_incpoint(handle, 4, 1, 1, 6000, idb((1, 5000)))
+    library.cnc_incpoint(handle, 5, 1, 2, 6000, idb((3, 400), (1, -2000)))
+    library.cnc_incpoint(handle, 2, 1, 1, 6000, idb((2, 900)))
+    control.advance(30)
+    assert [axis.velocity > 0.0 for axis in control.status().axes.values()] == [True, True, False]
+    control.advance(2000)
+    assert machine(control) == [3000, 900, 400]
+    assert list(library.cnc_finstate(handle)[1].cdata) == [0, 2, 0, 8, 16, 0, 0, 0]
+
+
 @pytest.mark.covers("fanuc.cnc_finstate")
+@pytest.mark.covers("fanuc.concept.direct_command")
+@pytest.mark.covers("fanuc.nmod.1")
+@pytest.mark.covers("fanuc.cnc_incpoint")
 def test_a_reset_and_an_alarm_empty_the_buffers() -> None:
     for stop in (PowerMate.reset, PowerMate.emergency_stop, lambda control: control.raise_alarm(85, "X")):
         control = PowerMate()
@@ -223,6 +270,8 @@ def test_a_reset_and_an_alarm_empty_the_buffers() -> None:
 
 
 @pytest.mark.covers("fanuc.cnc_finstate")
+@pytest.mark.covers("fanuc.concept.direct_command")
+@pytest.mark.covers("fanuc.cnc_incpoint", "fanuc.cnc_dwell")
 def test_a_change_of_mode_lets_commands_go_on() -> None:
     control = PowerMate()
     library, handle = at(control)
@@ -244,6 +293,7 @@ def test_a_change_of_mode_lets_commands_go_on() -> None:
     ("axis", "distance", "alarm"),
     [(2, 9000, (500, "OVER TRAVEL : +Y")), (3, -9000, (501, "OVER TRAVEL : -Z"))],
 )
+@pytest.mark.covers("fanuc.cnc_abspoint", "fanuc.cnc_incpoint", "fanuc.concept.direct_command")
 def test_a_command_past_a_limit_names_it(axis: int, distance: int, alarm: tuple[int, str]) -> None:
     control = PowerMate()
     library, handle = at(control)
@@ -264,6 +314,7 @@ def test_a_command_past_a_limit_names_it(axis: int, distance: int, alarm: tuple[
     *(f"fanuc.cnc_{name}.err.EW_BUSY" for name in ("incpoint", "abspoint", "refpoint", "dwell", "coordre")),
     *(f"fanuc.cnc_{name}" for name in ("incpoint", "abspoint", "refpoint", "dwell", "coordre")),
 )
+@pytest.mark.covers("fanuc.concept.direct_command")
 def test_a_running_program_has_the_axes() -> None:
     control = PowerMate()
     library, handle = at(control)
@@ -302,6 +353,7 @@ def test_a_running_program_has_the_axes() -> None:
 )
 @pytest.mark.covers("fanuc.concept.not_on_pmd")
 @pytest.mark.covers("fanuc.cnc_finstate", "fanuc.cnc_refpoint")
+@pytest.mark.covers("fanuc.concept.power_mate_d_limit")
 def test_a_power_mate_d_has_none_of_this() -> None:
     library, handle = at(PowerMate(model="D"))
     zero, fin = idb((1, 1)), fwlib.ODBFIN()
@@ -343,6 +395,7 @@ def test_a_power_mate_d_has_the_functions_of_the_other_sections() -> None:
 @pytest.mark.covers("fanuc.cnc_exebufstat", "fanuc.cnc_setfin")
 @pytest.mark.covers("fanuc.param.8003_7", "fanuc.param.8010")
 @pytest.mark.covers("fanuc.cnc_finstate", "fanuc.cnc_incpoint", "fanuc.cnc_refpoint")
+@pytest.mark.covers("fanuc.common.allmode")
 def test_parameters_allow_direct_commands() -> None:
     control = PowerMate()
     library, handle = at(control)
@@ -350,7 +403,7 @@ def test_parameters_allow_direct_commands() -> None:
     assert library.cnc_incpoint(handle, 1, 0, 2, 500, idb((1, 5), (2, 5)))[0] is EW.EW_PARAM
     assert library.cnc_refpoint(handle, 1, 0, 2)[0] is EW.EW_PARAM
     assert library.cnc_refpoint(handle, 1, 0, 1)[0] is EW.EW_OK
-    control.parameters.set(8003, 0)
+    control.parameters.set(8003, 0x7F)  # bit 7 alone allows them
     assert library.cnc_refpoint(handle, 1, 0, 1)[0] is EW.EW_PARAM
     assert library.cnc_exebufstat(handle)[0] is EW.EW_PARAM
     assert library.cnc_finstate(handle)[0] is EW.EW_PARAM
@@ -373,6 +426,7 @@ def test_parameters_allow_direct_commands() -> None:
         (1, 0, 1, 500, ((1, 100_000_000),), "EW_DATA"),
     ],
 )
+@pytest.mark.covers("fanuc.concept.direct_command")
 def test_a_command_is_refused_whole(
     path: int, nmod: int, count: int, feed: int, values: tuple[tuple[int, int], ...], code: str
 ) -> None:
@@ -433,6 +487,12 @@ def test_start_hold_and_reset() -> None:
     assert library.cnc_statinfo(handle)[1].emergency == 2
     give(library, handle, 3, 0)
     assert library.cnc_statinfo(handle)[1].emergency == 0
+    give(library, handle, 3, 1)
+    give(library, handle, 8, 1)
+    give(library, handle, 8, 0)
+    assert state(control) is RunState.ACTIVE
+    give(library, handle, 3, 0)  # it resets when it comes, not when it goes
+    assert state(control) is RunState.ACTIVE
 
 
 @pytest.mark.covers("fanuc.cnc_opdi.number.1", "fanuc.cnc_opdi.sig1.cdata.0", "fanuc.cnc_opdi.sig1.cdata.1")
@@ -458,9 +518,10 @@ def test_emergency_stop_is_active_low() -> None:
 def test_mode_select(value: int, mode: str) -> None:
     control = PowerMate()
     library, handle = at(control)
-    control.select_mode("T-JOG")
-    assert give(library, handle, 9, value) == 0
-    assert control.mode is PowerMateMode[mode]
+    for before in ("T-JOG", "RMT", "REF", "EDIT", "HND", "MDI", "INC", "MEM"):
+        control.select_mode(before)
+        assert give(library, handle, 9, value) == 0
+        assert control.mode is PowerMateMode[mode]
 
 
 @pytest.mark.covers("fanuc.cnc_opdi.number.10", "fanuc.cnc_opdi.sig10.255", "fanuc.cnc_opdi.sig10.range")
@@ -517,8 +578,14 @@ def test_jog_feed_of_one_axis_and_of_all() -> None:
     assert [speeds(1, 2), speeds(9, 3), speeds(1, 0)] == [[0, 3000, 0], [0, 0, -3000], [3000] * 3]
     give(library, handle, 7, 1)
     assert speeds(9, 1) == [-15000, 0, 0]
+    assert [speeds(1, 1), speeds(1, 3)] == [[15000, 0, 0], [0, 0, 15000]]
     give(library, handle, 7, 0)
     assert speeds(9, 1) == [-3000, 0, 0]
+    assert speeds(9, 0) == [-3000] * 3
+    control.select_mode("T-JOG")
+    assert speeds(1, 3) == [0, 0, 3000]
+    control.select_mode("T-HND")
+    assert speeds(1, 3) == [0, 0, 0]
 
 
 @pytest.mark.covers("fanuc.cnc_opdi.number.4")
@@ -528,6 +595,7 @@ def test_jog_feed_of_one_axis_and_of_all() -> None:
 )
 @pytest.mark.covers("fanuc.cnc_incpoint")
 @pytest.mark.covers("fanuc.cnc_opdi")
+@pytest.mark.covers("fanuc.cnc_rdcurrent")
 def test_an_axis_whose_servo_is_off_does_not_move(bit: int) -> None:
     control = PowerMate(axes=6)
     library, handle = at(control)
@@ -539,6 +607,11 @@ def test_an_axis_whose_servo_is_off_does_not_move(bit: int) -> None:
     give(library, handle, 4, 0)
     control.advance(500)
     assert machine(control) == [500 if k == bit else 0 for k in range(6)]
+    control.signals.give(100, 0x3F)  # all are jogged
+    control.advance(200)
+    give(library, handle, 4, 1 << bit)
+    control.advance(300)
+    assert [each.velocity == 0.0 for each in control.status().axes.values()][bit]
 
 
 @pytest.mark.covers("fanuc.cnc_opdi.number.12")
@@ -562,16 +635,17 @@ def test_torque_mode_of_an_axis(bit: int) -> None:
 @pytest.mark.covers("fanuc.cnc_opdi.number.13", "fanuc.cnc_opdi.sig13.axis", "fanuc.cnc_opdi.sig13.formula")
 @pytest.mark.covers("fanuc.cnc_diagnoss")
 @pytest.mark.covers("fanuc.cnc_opdi")
+@pytest.mark.covers("fanuc.diag.kind.word_axis", "fanuc.param.2086")
 def test_torque_override_limits_the_current() -> None:
-    control, library, handle = started("G0 X900. Y900. Z900.")
+    control, library, handle = started("G0 X900. Y-900. Z900.")
     control.advance(200)
     give(library, handle, 13, 51)
     give(library, handle, 13, 102, 2)
     assert [library.cnc_diagnoss(handle, 202, axis, 6)[1].u.idata for axis in (1, 2, 3)] == [200, 400, 200]
-    assert library.cnc_rdcurrent(handle)[1][:3] == [round(1782 * each) for each in (0.2, 0.4, 0.2)]
+    assert library.cnc_rdcurrent(handle)[1][:3] == [round(1782 * each) for each in (0.2, -0.4, 0.2)]
     give(library, handle, 13, 0, 1)
     give(library, handle, 13, 255, 3)
-    assert library.cnc_rdcurrent(handle)[1][:3] == [0, round(1782 * 0.4), 1782]
+    assert library.cnc_rdcurrent(handle)[1][:3] == [0, -round(1782 * 0.4), 1782]
 
 
 @pytest.mark.parametrize(
@@ -580,6 +654,8 @@ def test_torque_override_limits_the_current() -> None:
         *(pytest.param(number, 1, 0, "EW_NUMBER", marks=pytest.mark.covers("fanuc.cnc_opdi.number.undefined"))
           for number in (0, 5, 6, 11, 16, -1)),
         (13, 9, 7, "EW_ATTRIB"),
+        (13, 9, 4, "EW_ATTRIB"),  # the machine has three axes
+        (14, 1, 4, "EW_ATTRIB"),
         (14, 1, -1, "EW_ATTRIB"),
         pytest.param(4, 0x40, 0, "EW_DATA", marks=pytest.mark.covers("fanuc.cnc_opdi.sig4.cdata.bit6")),
         pytest.param(4, 0x81, 0, "EW_DATA", marks=pytest.mark.covers("fanuc.cnc_opdi.sig4.cdata.bit7")),
@@ -595,6 +671,7 @@ def test_torque_override_limits_the_current() -> None:
     ],
 )  # fmt: skip
 @pytest.mark.covers("fanuc.cnc_opdi")
+@pytest.mark.covers("fanuc.cnc_opdi.sig13.axis", "fanuc.cnc_opdi.sig14.axis")
 def test_an_operation_signal_is_refused(number: int, value: int, axis: int, code: str) -> None:
     control, library, handle = started()
     before = control.pmc.read("G", 0, 255)
@@ -608,6 +685,8 @@ def test_an_operation_signal_is_refused(number: int, value: int, axis: int, code
     "fanuc.cnc_setfin.err.EW_BUSY",
 )  # fmt: skip
 @pytest.mark.covers("fanuc.cnc_exebufstat", "fanuc.cnc_opdi")
+@pytest.mark.covers("fanuc.concept.program_busy_conditions")
+@pytest.mark.covers("fanuc.cnc_wropnlgnrl")
 def test_a_busy_control_is_asked_again() -> None:
     control, library, handle = started()
     library.cnc_wropnlgnrl(handle, fwlib.IODBGNRL(type=1, sgnal=1))
@@ -628,6 +707,7 @@ def test_a_busy_control_is_asked_again() -> None:
 
 
 @pytest.mark.covers("fanuc.cnc_finstate")
+@pytest.mark.covers("fanuc.cnc_incpoint")
 def test_a_snapshot_holds_signals_buffers_and_memory() -> None:
     control = PowerMate()
     library, handle = at(control)

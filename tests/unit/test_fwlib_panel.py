@@ -84,6 +84,13 @@ def test_a_bit_selects_its_signal_alone(bit: int, name: str, value: int) -> None
     _, alone = library.cnc_rdopnlsgnl(handle, 1 << bit)
     assert (alone.type, getattr(alone, name)) == (1 << bit, value)
     assert sum(getattr(alone, other) for other in members) == value
+    assert library.cnc_wropnlsgnl(handle, fwlib.IODBSGNL(type=ALL, **members)) == 0
+    _, others = library.cnc_rdopnlsgnl(handle, ALL & ~(1 << bit))
+    assert others.type == ALL & ~(1 << bit)
+    assert {other: getattr(others, other) for other in members} == members | {name: 0}
+    assert library.cnc_wropnlsgnl(handle, fwlib.IODBSGNL(type=ALL & ~(1 << bit))) == 0
+    found = library.cnc_rdopnlsgnl(handle, ALL)[1]
+    assert {other: getattr(found, other) for other in members} == dict.fromkeys(members, 0) | {name: value}
 
 
 @pytest.mark.covers("fanuc.cnc_rdopnlsgnl")
@@ -109,10 +116,11 @@ def test_unused_bits_select_nothing() -> None:
 @pytest.mark.parametrize(
     ("name", "value"),
     [
-        pytest.param("rpd_ovrd", 4, marks=pytest.mark.covers("fanuc.cnc_wropnlsgnl.err.EW_DATA")),
-        ("jog_ovrd", 25), ("feed_ovrd", 21), ("mode", 6), ("mode", -1), ("blck_del", 2), ("feed_hold", -1),
+        ("rpd_ovrd", 4), ("rpd_ovrd", -1), ("jog_ovrd", 25), ("feed_ovrd", 21), ("mode", 6), ("mode", -1),
+        ("blck_del", 2), ("sngl_blck", 2), ("machn_lock", -2), ("dry_run", 2), ("mem_prtct", 3), ("feed_hold", -1),
     ],
 )  # fmt: skip
+@pytest.mark.covers("fanuc.cnc_wropnlsgnl.err.EW_DATA")
 def test_a_bad_value_writes_nothing(name: str, value: int) -> None:
     control, library, handle = written(feed_ovrd=7, dry_run=1)
     _, before = library.cnc_rdopnlsgnl(handle, ALL)
@@ -133,7 +141,10 @@ def test_a_bad_value_writes_nothing(name: str, value: int) -> None:
 @pytest.mark.covers("fanuc.cnc_statinfo")
 @pytest.mark.covers("fanuc.IODBSGNL", "fanuc.IODBSGNL.mode")
 def test_mode(value: int, aut: int) -> None:
-    _, library, handle = written(mode=value)
+    control, library, handle = written(mode=value)
+    assert library.cnc_statinfo(handle)[1].aut == aut
+    assert control.pmc.read("F", 73, 73)[0] == (0, 1, 3, 4, 5, 0x15)[value]
+    control.power_cycle()
     assert library.cnc_statinfo(handle)[1].aut == aut
     assert library.cnc_rdopnlsgnl(handle, 1)[1].mode == value
 
@@ -154,6 +165,25 @@ def test_rapid_override(value: int, mm_min: int) -> None:
     control.cycle_start()
     control.advance(300)
     assert round(control.status().axes["X"].velocity * 60.0) == mm_min
+    assert control.pmc.read("F", 76, 76) == bytes([value << 4])
+    control.power_cycle()
+    assert (control.signals.rapid_override, control.pmc.read("F", 76, 76)[0]) == (value, value << 4)
+
+
+@pytest.mark.covers("fanuc.IODBSGNL.rpd_ovrd.3")
+def test_f0_follows_its_parameter_at_once() -> None:
+    control, _, _ = written(rpd_ovrd=3)
+    control.programs.memory.create("O0004", b"O0004\nG0 X300.\n")
+    control.select_program(4)
+    control.parameters.set(1421, 700, 1)
+    control.cycle_start()
+    control.advance(300)
+    seen = [round(control.status().axes["X"].velocity * 60.0)]
+    for mm_min in (250, 15_000):
+        control.parameters.set(1421, mm_min, 1)
+        control.advance(600)
+        seen.append(round(control.status().axes["X"].velocity * 60.0))
+    assert seen == [700, 250, 15_000]
 
 
 JOG_PERCENT = (
@@ -176,6 +206,10 @@ def test_jog_override(value: int, percent: float) -> None:
     control.signals.give(100, 4)
     control.advance(400)
     assert control.status().axes["Z"].velocity * 60.0 == pytest.approx(3000.0 * percent / 100.0, abs=1e-6)
+    counts = int.from_bytes(control.pmc.read("F", 79, 80), "little")  # as the PMC sees it: 0.01 %, inverted
+    assert 0xFFFF - counts == round(percent * 100)
+    control.power_cycle()
+    assert control.signals.jog_override == percent
 
 
 @pytest.mark.parametrize(
@@ -194,6 +228,8 @@ def test_feed_override(value: int, percent: int) -> None:
     control.advance(300)
     assert control.status().axes["Y"].velocity * 60.0 == pytest.approx(450.0 * percent / 100.0, abs=1e-6)
     assert control.pmc.read("F", 78, 78) == bytes([255 - percent])
+    control.power_cycle()
+    assert (control.signals.feed_override, control.pmc.read("F", 78, 78)) == (percent, bytes([255 - percent]))
 
 
 PROGRAM = b"O0004\nG1 X2. F600\n/Y3.\nZ4.\n"
@@ -242,6 +278,7 @@ def test_dry_run(value: int, mm_min: int) -> None:
 @pytest.mark.covers("fanuc.IODBSGNL.mem_prtct.0", "fanuc.IODBSGNL.mem_prtct.1")
 @pytest.mark.covers("fanuc.IODBSGNL.mem_prtct")
 @pytest.mark.covers("fanuc.IODBSGNL")
+@pytest.mark.covers("fanuc.concept.write_protection_programs", "fanuc.concept.protect_key")
 def test_memory_protection() -> None:
     control, library, handle = written(mem_prtct=1)
     assert control.state.protection_keys == {1, 2, 3, 4}
@@ -252,6 +289,7 @@ def test_memory_protection() -> None:
 @pytest.mark.covers("fanuc.IODBSGNL.feed_hold.0", "fanuc.IODBSGNL.feed_hold.1")
 @pytest.mark.covers("fanuc.cnc_statinfo")
 @pytest.mark.covers("fanuc.IODBSGNL", "fanuc.IODBSGNL.feed_hold")
+@pytest.mark.covers("fanuc.cnc_wropnlsgnl")
 def test_feed_hold_holds_and_keeps_from_starting() -> None:
     control, library, handle = written(feed_hold=0)
     control.programs.memory.create("O0004", b"O0004\nG1 X90. F240\n")
@@ -261,11 +299,48 @@ def test_feed_hold_holds_and_keeps_from_starting() -> None:
     library.cnc_wropnlsgnl(handle, fwlib.IODBSGNL(type=1 << 12, feed_hold=1))
     control.advance(100)
     assert library.cnc_statinfo(handle)[1].run == 2
+    control.signals.give(7, 4)
+    control.signals.give(7, 0)
+    control.advance(10)
+    assert library.cnc_statinfo(handle)[1].run == 2
     library.cnc_wropnlsgnl(handle, fwlib.IODBSGNL(type=1 << 12, feed_hold=0))
     control.signals.give(7, 4)
     control.signals.give(7, 0)
     control.advance(10)
     assert control.control.channels[0].run_state is RunState.ACTIVE
+
+
+OTHERS = ("blck_del", "sngl_blck", "machn_lock", "dry_run", "mem_prtct", "feed_hold")
+
+
+@pytest.mark.parametrize("value", [0, 1])
+@pytest.mark.parametrize(
+    "name",
+    [
+        pytest.param(name, marks=pytest.mark.covers(f"fanuc.IODBSGNL.{name}.0", f"fanuc.IODBSGNL.{name}.1"))
+        for name in OTHERS
+    ],
+)
+@pytest.mark.covers("fanuc.cnc_wropnlsgnl", "fanuc.IODBSGNL")
+def test_a_switch_of_the_panel_is_that_switch_alone(name: str, value: int) -> None:
+    """F75 has BDTO, SBKO, MLKO, DRNO, KEYO and SPO in bits 2 to 7."""
+    control, library, handle = written(**dict.fromkeys(OTHERS, 1 - value))
+    bits = {each: bit for bit, (each, _) in SIGNALS.items()}
+    sgnl = fwlib.IODBSGNL(type=1 << bits[name], **dict.fromkeys(OTHERS, value))
+    assert library.cnc_wropnlsgnl(handle, sgnl) == 0
+    switches = control.control.switches
+    found = {
+        "blck_del": 1 in switches.block_delete,
+        "sngl_blck": switches.single_block,
+        "machn_lock": switches.machine_lock,
+        "dry_run": switches.dry_run,
+        "mem_prtct": control.state.protection_keys == {1, 2, 3, 4},
+        "feed_hold": control.signals.state.hold_is_on,
+    }
+    assert found == {each: bool(value if each == name else 1 - value) for each in OTHERS}
+    assert bool(control.pmc.read("F", 2, 2)[0] & 0x80) is switches.dry_run
+    bit = 4 << OTHERS.index(name)
+    assert control.pmc.read("F", 75, 75)[0] == (bit if value else 0xFC & ~bit)
 
 
 # ---------------------------------------------------------------------- general-purpose signals and names
@@ -298,6 +373,16 @@ def test_a_general_purpose_signal(bit: int) -> None:
     assert library.cnc_rdopnlgnrl(handle, 1 << bit)[1].sgnal == 1 << bit
     library.cnc_wropnlgnrl(handle, fwlib.IODBGNRL(type=1 << bit, sgnal=0))
     assert library.cnc_rdopnlgnrl(handle, 0xFF)[1].sgnal == 0xFF ^ 1 << bit
+    others = 0xFF ^ 1 << bit  # what is not selected is not written, and not read
+    for value in (0, 0xFF):
+        library.cnc_wropnlgnrl(handle, fwlib.IODBGNRL(type=0xFF, sgnal=value))
+        library.cnc_wropnlgnrl(handle, fwlib.IODBGNRL(type=others, sgnal=0xFF ^ value))
+        assert library.cnc_rdopnlgnrl(handle, 0xFF)[1].sgnal == (0xFF ^ value) ^ 1 << bit
+    library.cnc_wropnlgnrl(handle, fwlib.IODBGNRL(type=0xFF, sgnal=0xFF))
+    _, found = library.cnc_rdopnlgnrl(handle, others)
+    assert (found.type, found.sgnal) == (others, others)
+    control.power_cycle()
+    assert library.cnc_rdopnlgnrl(handle, 0xFF)[1].sgnal == 0xFF
 
 
 @pytest.mark.covers("fanuc.cnc_wropnlgsname", "fanuc.cnc_wropnlgnrl")
@@ -360,10 +445,18 @@ def test_a_signal_has_a_name_of_eight_characters(bit: int) -> None:
     assert one.type == 1 << bit
     assert bytes(one).count(b"NAME-OF-") == 1
     assert bytes(one)[4:].count(b" ") == 0
+    rest = fwlib.IODBRDNA(type=0xFF ^ 1 << bit, **{f"sgnl{k}_name": b"OTHER" for k in range(1, 9)})
+    assert library.cnc_wropnlgsname(handle, rest) == 0
+    _, found = library.cnc_rdopnlgsname(handle, 0xFF)
+    kept = {f"sgnl{bit + 1}_name": b"NAME-OF-"}
+    assert {name: getattr(found, name) for name in names} == dict.fromkeys(names, b"OTHER   ") | kept
+    _, found = library.cnc_rdopnlgsname(handle, 0xFF ^ 1 << bit)
+    assert (found.type, getattr(found, f"sgnl{bit + 1}_name")) == (0xFF ^ 1 << bit, b"")
 
 
 @pytest.mark.covers("fanuc.cnc_rdopnlgnrl", "fanuc.cnc_rdopnlgsname")
 @pytest.mark.covers("fanuc.cnc_statinfo")
+@pytest.mark.covers("fanuc.cnc_wropnlsgnl", "fanuc.cnc_wropnlgnrl", "fanuc.cnc_wropnlgsname")
 def test_the_panel_outlasts_switching_off(tmp_path: Path) -> None:
     control = PowerMate(memory=tmp_path / "memory")
     library, handle = at(control)
@@ -382,6 +475,14 @@ def test_the_panel_outlasts_switching_off(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(("mode", "byte"), [(0, 0), (1, 1), (2, 3), (3, 4), (4, 5), (5, 0x15)])
+@pytest.mark.covers(
+    "fanuc.IODBSGNL.mode.0",
+    "fanuc.IODBSGNL.mode.1",
+    "fanuc.IODBSGNL.mode.2",
+    "fanuc.IODBSGNL.mode.3",
+    "fanuc.IODBSGNL.mode.4",
+    "fanuc.IODBSGNL.mode.5",
+)
 def test_the_mode_of_the_panel_is_shown_to_the_pmc_by_its_signals(mode: int, byte: int) -> None:
     """MD1O, MD2O, MD4O are bits 0 to 2 of F73, ZRNO is bit 4: MEM 1, EDIT 3, HND 4, JOG 5, REF 5 with ZRNO."""
     control, _, _ = written(mode=mode)

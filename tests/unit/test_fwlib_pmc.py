@@ -46,6 +46,7 @@ def read(library: Any, handle: int, kind: int, first: int, last: int | None = No
 @pytest.mark.covers(
     "fanuc.example.pmc_write_word", "fanuc.example.pmc_read_word", "fanuc.pmc_wrpmcrng", "fanuc.pmc_rdpmcrng"
 )
+@pytest.mark.covers("fanuc.pmc.data_type.1")
 def test_word_of_the_manual() -> None:
     library, handle = at(PowerMate())
     buf = fwlib.IODBPMC(type_a=9, type_d=1, datano_s=100, datano_e=101)
@@ -59,6 +60,7 @@ def test_word_of_the_manual() -> None:
 
 @pytest.mark.covers("fanuc.example.pmc_write_bytes", "fanuc.example.pmc_read_bytes")
 @pytest.mark.covers("fanuc.pmc_rdpmcrng")
+@pytest.mark.covers("fanuc.pmc.data_type.0")
 def test_bytes_of_the_manual() -> None:
     control = PowerMate()
     library, handle = at(control)
@@ -102,6 +104,8 @@ def test_an_area_ends_where_the_manual_says(letter: str, first: int, last: int) 
     assert library.pmc_rdpmcrng(handle, kind, 0, first - 1, first, 10)[0] is EW.EW_NUMBER
     protected = letter in "FX" or first == 9000
     assert write(library, handle, kind, first, 1) is (EW.EW_PROT if protected else EW.EW_OK)
+    if not protected:
+        assert (read(library, handle, kind, first), read(library, handle, kind, last)) == ([1], [0])
     assert write(library, handle, kind, last, 1) is (EW.EW_PROT if protected or letter == "K" else EW.EW_OK)
 
 
@@ -232,6 +236,7 @@ def test_writing_is_refused_and_writes_nothing(head: tuple[int, ...], length: in
 @pytest.mark.covers("fanuc.pmc_rdpmcrng")
 @pytest.mark.covers("fanuc.EW_NOPMC", "fanuc.pmc_rdpmcrng.err.EW_NOPMC", "fanuc.pmc_wrpmcrng.err.EW_NOPMC")
 @pytest.mark.covers("fanuc.pmc_wrpmcrng")
+@pytest.mark.covers("fanuc.common.allmode")
 def test_a_control_without_a_pmc() -> None:
     library, handle = at(PowerMate(options=("custom_macro",)))
     assert library.pmc_rdpmcrng(handle, D, 0, 3, 3, 9)[0] is EW.EW_NOPMC
@@ -261,6 +266,12 @@ def test_which_addresses_there_are() -> None:
     assert library.pmc_rdpmcinfo(handle, -2)[0] is EW.EW_ATTRIB
 
 
+@pytest.mark.covers(
+    "fanuc.pmc.area.T.0000_0079",
+    "fanuc.pmc.area.K.0000_0019",
+    "fanuc.pmc.area.C.0000_0079",
+    "fanuc.pmc.area.D.0000_1859",
+)
 def test_timers_keep_relays_counters_and_data_outlast_switching_off(tmp_path: Path) -> None:
     control = PowerMate(memory=tmp_path / "memory")
     library, handle = at(control)

@@ -29,6 +29,7 @@ def _rows() -> dict[str, Row]:
 
 @pytest.mark.covers("fanuc.common.decl")
 @pytest.mark.parametrize("name", NAMES)
+@pytest.mark.covers("fanuc.concept.function_index", "fanuc.concept.header_and_linkage")
 def test_a_prototype_is_the_manuals(name: str) -> None:
     row = _rows()[f"fanuc.{name}"]
     printed = re.sub(r"FWLIBAPI |WINAPI |;", "", row.signature)
@@ -38,6 +39,7 @@ def test_a_prototype_is_the_manuals(name: str) -> None:
 
 
 @pytest.mark.covers("fanuc.common.handle2")
+@pytest.mark.covers("fanuc.concept.handle_lifecycle")
 def test_every_function_wants_an_open_handle_first() -> None:
     session = fwlib.Session()
     session.attach(0, PowerMate())
@@ -54,6 +56,7 @@ def test_every_function_wants_an_open_handle_first() -> None:
 
 @pytest.mark.covers("fanuc.common.allmode")
 @pytest.mark.parametrize("mode", ["MDI", "MEM", "EDIT", "HND", "JOG", "T-JOG", "T-HND", "INC", "REF", "RMT"])
+@pytest.mark.covers("fanuc.concept.mode_matrix")
 def test_functions_are_there_in_every_mode(mode: str) -> None:
     control = PowerMate()
     control.select_mode(mode)

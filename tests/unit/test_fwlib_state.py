@@ -230,10 +230,48 @@ def waiting(cycles: int = 3) -> PowerMate:
     return running("M8\nG1 X50. F600", cycles, script={(Function.M, 8): Answer(after_s=None)})
 
 
+def waiting_for(word: str, function: Function) -> PowerMate:
+    number = int(word[1:])
+    return running(f"{word}\nG1 X50. F600", 3, script={(function, number): Answer(after_s=None)})
+
+
 def held_while_a_function_waits() -> PowerMate:
     control = waiting()
     control.feed_hold()
     control.advance(5)
+    return control
+
+
+def stopped_by_choice() -> PowerMate:
+    control = PowerMate()
+    control.optional_stop()
+    put(control, 7, "M1\nG1 X50. F600")
+    control.cycle_start()
+    control.advance(400)
+    return control
+
+
+def stopped_after_a_block() -> PowerMate:
+    control = PowerMate()
+    control.control.set_switches(single_block=True)
+    put(control, 7, "G1 X2. F600\nX50.")
+    control.cycle_start()
+    control.advance(800)
+    return control
+
+
+def held_in_a_dwell() -> PowerMate:
+    control = running("G4 P3000", 40)
+    control.feed_hold()
+    control.advance(5)
+    return control
+
+
+def held_by_the_mode() -> PowerMate:
+    control = running("G1 X50. F600", 200)
+    control.select_mode("EDIT")
+    control.advance(300)
+    control.select_mode("MEM")
     return control
 
 
@@ -246,6 +284,12 @@ STATES: dict[str, tuple[Callable[[], PowerMate], int, int, int]] = {
     "after a function": (lambda: running("M8\nG4 P3000", 40), 4, 3, 0),
     "at a function": (waiting, 4, 0, 1),
     "held at a function": (held_while_a_function_waits, 2, 0, 1),
+    "at a speed": (lambda: waiting_for("S500", Function.S), 4, 0, 1),
+    "stopped by M1": (stopped_by_choice, 1, 0, 0),
+    "stopped after a block": (stopped_after_a_block, 1, 0, 0),
+    "held in a dwell": (held_in_a_dwell, 2, 0, 0),
+    "held by the mode": (held_by_the_mode, 2, 0, 0),
+    "over": (lambda: running("G1 X.5 F600\nM30", 900), 0, 0, 0),
 }
 
 
@@ -279,6 +323,52 @@ def test_state_of_a_program(setup: Callable[[], PowerMate], run: int, motion: in
     assert found == (1, run, motion, mstb, 0, 0, 0)
 
 
+@pytest.mark.covers("fanuc.cnc_statinfo", "fanuc.ODBST.alarm.1", "fanuc.ODBST.alarm.0", "fanuc.ODBST.run")
+@pytest.mark.covers("fanuc.ODBST.run.0", "fanuc.ODBST.run.1", "fanuc.ODBST.run.4", "fanuc.ODBST.emergency.1")
+def test_an_alarm_stops_and_a_reset_ends_a_program() -> None:
+    control = running("G1 X50. F600", 200)
+    library, handle = at(control)
+
+    def state() -> tuple[int, ...]:
+        found = library.cnc_statinfo(handle)[1]
+        return found.run, found.motion, found.emergency, found.alarm
+
+    seen = [state()]
+    control.raise_alarm(85, "OVERRUN")
+    control.advance(500)
+    seen.append(state())
+    control.reset()
+    seen.append(state())
+    control.raise_alarm(85, "OVERRUN")  # at rest
+    seen.append(state())
+    control.reset()
+    control.cycle_start()
+    control.advance(100)
+    control.emergency_stop()
+    control.advance(300)
+    seen.append(state())
+    assert seen == [(4, 1, 0, 0), (1, 0, 0, 1), (0, 0, 0, 0), (0, 0, 0, 1), (0, 0, 1, 0)]
+
+
+@pytest.mark.covers(
+    "fanuc.cnc_statinfo", "fanuc.ODBST.motion", "fanuc.ODBST.motion.0", "fanuc.ODBST.motion.1"
+)
+@pytest.mark.covers("fanuc.ODBST.run.0", "fanuc.ODBST.aut.5", "fanuc.ODBST.aut.6")
+def test_motion_without_a_program_shows() -> None:
+    for mode, number in (("JOG", 5), ("T-JOG", 6)):
+        control = PowerMate()
+        library, handle = at(control)
+        control.select_mode(mode)
+        seen = []
+        for key in (2, 0):
+            control.signals.give(100, key)
+            control.advance(300)
+            found = library.cnc_statinfo(handle)[1]
+            seen.append((found.aut, found.run, found.motion))
+        assert seen == [(number, 0, 1), (number, 0, 0)]
+
+
+@pytest.mark.covers("fanuc.cnc_diagnoss", "fanuc.diag.kind.byte")
 def test_diagnosis_tells_that_a_function_waits_for_its_answer() -> None:
     told = []
     for control in (running("M8", 3), running("M8", 3, script={(Function.M, 8): Answer(after_s=None)})):
@@ -302,11 +392,15 @@ def test_emergency_stop_and_its_release() -> None:
     assert emergency_of(control) == 0
 
 
-@pytest.mark.covers("fanuc.ODBST.emergency.2")
+@pytest.mark.covers("fanuc.ODBST.emergency.0", "fanuc.ODBST.emergency.1", "fanuc.ODBST.emergency.2")
 @pytest.mark.covers("fanuc.ODBST", "fanuc.ODBST.emergency")
 def test_a_reset_signal_shows_as_reset() -> None:
     control = PowerMate()
     control.signals.give_bits(8, 0x80, 0x80)
+    assert emergency_of(control) == 2
+    control.emergency_stop()
+    assert emergency_of(control) == 1  # it comes before the reset
+    control.emergency_stop(False)
     assert emergency_of(control) == 2
     control.signals.give_bits(8, 0x80, 0)
     assert emergency_of(control) == 0
@@ -352,6 +446,20 @@ def test_a_program_that_goes_out_shows_as_output() -> None:
 )
 @pytest.mark.covers("fanuc.cnc_statinfo")
 @pytest.mark.covers("fanuc.ODBST")
+@pytest.mark.covers("fanuc.concept.compare_running", "fanuc.concept.background_edit")
+@pytest.mark.covers(
+    "fanuc.ODBST.aut.0",
+    "fanuc.ODBST.aut.1",
+    "fanuc.ODBST.aut.2",
+    "fanuc.ODBST.aut.3",
+    "fanuc.ODBST.aut.4",
+    "fanuc.ODBST.aut.5",
+    "fanuc.ODBST.aut.6",
+    "fanuc.ODBST.aut.7",
+    "fanuc.ODBST.aut.8",
+    "fanuc.ODBST.aut.9",
+    "fanuc.ODBST.aut.10",
+)
 def test_edit_state() -> None:
     control = PowerMate()
     library, handle = at(control)
@@ -372,6 +480,21 @@ def test_edit_state() -> None:
     control.transfer.take(b"%\nO0005\n")
     states.append(library.cnc_statinfo(handle)[1].edit)
     assert states == [0, 1, 6, 5, 4]
+    control.transfer = None
+    control.select_mode("EDIT")
+    states = []
+    for piece in ("", "%", "%\nO0009\nM30", "\n%"):
+        if not piece:
+            assert library.cnc_dwnstart(handle) == 0
+        else:
+            assert library.cnc_download(handle, piece, len(piece)) == 0
+        states.append(library.cnc_statinfo(handle)[1].edit)
+    assert library.cnc_dwnend(handle) == 0
+    states.append(library.cnc_statinfo(handle)[1].edit)
+    assert states == [6, 6, 4, 4, 0]
+    control.select_mode("EDIT")
+    with control.programs.edit(9):
+        assert library.cnc_statinfo(handle)[1].edit == 1
 
 
 # ---------------------------------------------------------------------- cnc_alarm, cnc_rdalminfo
@@ -409,6 +532,7 @@ def signed(bits: int) -> int:
 )  # fmt: skip
 @pytest.mark.covers("fanuc.cnc_rdalminfo")
 @pytest.mark.covers("fanuc.ODBALM", "fanuc.ODBALM.data")
+@pytest.mark.covers("fanuc.concept.alarm_ps000_ps101")
 def test_an_alarm_sets_the_bit_of_its_group_and_is_found_by_it(bit: int, number: int) -> None:
     control = PowerMate()
     library, handle = at(control)
@@ -444,6 +568,29 @@ def test_unused_bits_are_never_set_and_select_nothing() -> None:
     assert library.cnc_rdalminfo(handle, 0, 0, 6)[0] is fwlib.EW.EW_ATTRIB
 
 
+@pytest.mark.covers(*(f"fanuc.ODBALM.data.bit{bit}" for bit in (3, 4, 6)), "fanuc.cnc_alarm")
+@pytest.mark.covers("fanuc.cnc_rdalminfo", "fanuc.ODBALM.data", "fanuc.ALMINFO.alm.axis")
+def test_what_goes_wrong_sets_the_bit_of_its_group() -> None:
+    limit = PowerMate()
+    limit.parameters.set(1320, 4000, 2)
+    servo = PowerMate(servo=True)
+    servo.parameters.set(1828, 200, 1)
+    found = []
+    for control, text in (
+        (limit, "G1 Y9. F600"),
+        (servo, "G1 X50. F6000"),
+        (PowerMate(), "G1 X="),
+    ):
+        put(control, 7, text)
+        control.cycle_start()
+        control.advance(2000)
+        library, handle = at(control)
+        bits = library.cnc_alarm(handle)[1].data
+        alarm = library.cnc_rdalminfo(handle, 0, bits, 6)[1].u.alm1.alm[0]
+        found.append((bits, alarm.axis))
+    assert found == [(1 << 4, 2), (1 << 6, 1), (1 << 3, 0)]
+
+
 LABELS = [
     "P/S 100 ALARM", "P/S 000 ALARM", "P/S 101 ALARM", "P/S ALARM (1-255)", "OT ALARM", "OH ALARM", "SERVO ALARM",
     "unknown", "APC ALARM", "SPINDLE ALARM", "P/S ALARM (5000-)",
@@ -462,6 +609,7 @@ LABELS = [
         ((1010,), []),
     ],
 )
+@pytest.mark.covers("fanuc.cnc_alarm")
 def test_the_manuals_program_prints_alarms(numbers: tuple[int, ...], printed: list[str]) -> None:
     control = PowerMate()
     library, handle = at(control)
@@ -511,6 +659,7 @@ def test_alarms_with_axis_and_text() -> None:
         (-1, 6, "EW_NUMBER"),
     ),
 )
+@pytest.mark.covers("fanuc.concept.length_argument")
 def test_alarm_information_is_refused(type_: int, length: int, code: str) -> None:
     library, handle = at(PowerMate())
     assert library.cnc_rdalminfo(handle, type_, 8, length)[0] is fwlib.EW[code]

@@ -225,6 +225,7 @@ def place(name: str, path: str) -> tuple[int, int]:
         for row, *each in PLACES
     ],
 )
+@pytest.mark.covers("fanuc.concept.c_types", "fanuc.concept.struct_packing", "fanuc.common.types")
 def test_an_element_lies_where_the_diagram_shows_it(
     row: str, name: str, path: str, offset: int, size: int
 ) -> None:
@@ -241,6 +242,7 @@ def test_an_element_lies_where_the_diagram_shows_it(
         for name, size in SIZES.items()
     ],
 )
+@pytest.mark.covers("fanuc.concept.struct_packing", "fanuc.common.types")
 def test_a_structure_is_as_long_as_the_manual_says(name: str, size: int) -> None:
     assert fwlib.STRUCTURES[name].size == ctypes.sizeof(getattr(fwlib, name)) == size
 
@@ -248,6 +250,7 @@ def test_a_structure_is_as_long_as_the_manual_says(name: str, size: int) -> None
 @pytest.mark.covers(
     "fanuc.common.types", "fanuc.MSG_SIZE", "fanuc.common.MAX_AXIS2", "fanuc.common.ALL_AXES2"
 )
+@pytest.mark.covers("fanuc.concept.c_types", "fanuc.concept.struct_packing")
 def test_no_element_is_moved_to_an_even_or_whole_address() -> None:
     assert place("ODBPOS", "ldata") == (2, 4)
     assert place("ODBAHIS", "alm_his.dummy2") == (19, 1)

@@ -63,6 +63,7 @@ def test_an_alarm_of_the_history_says_when_it_came() -> None:
 )
 @pytest.mark.covers("fanuc.cnc_rdophistry")
 @pytest.mark.covers("fanuc.ODBHIS")
+@pytest.mark.covers("fanuc.cnc_rdophisno")
 def test_records_of_the_operation_history_say_what_was_done_and_when() -> None:
     control, handle = attached()
     control.clock.set_now(AT)
@@ -200,6 +201,8 @@ def test_pmc_areas_have_a_letter_and_ends() -> None:
 @pytest.mark.covers("fanuc.cnc_wrparam", "fanuc.cnc_rdparam", "fanuc.ALL_AXES")
 @covers("IODBPSD.datano", "IODBPSD.type", "IODBPSD.u.ldata", "IODBPSD.u.ldatas")
 @pytest.mark.covers("fanuc.struct.IODBPSD")
+@pytest.mark.covers("fanuc.concept.axis_number", "fanuc.ncparam.1320", "fanuc.ncparam.1321")
+@pytest.mark.covers("fanuc.enum.param_axis.1..m")
 def test_stroke_limits_are_written_and_read_by_number_and_axis() -> None:
     control, handle = attached()
     assert fwlib.cnc_wrparam(handle, 8, psd(1320, 2, ldata=98_765)) == OK
@@ -214,6 +217,8 @@ def test_stroke_limits_are_written_and_read_by_number_and_axis() -> None:
 @covers("IODBPSD.u.cdata", "IODBPSD.u.cdatas", "IODBPSD.u.idata", "IODBPSD.u.idatas")
 @pytest.mark.covers("fanuc.cnc_rdparam", "fanuc.cnc_wrparam")
 @pytest.mark.covers("fanuc.struct.IODBPSD")
+@pytest.mark.covers("fanuc.concept.c_types", "fanuc.concept.bit_param_rmw")
+@pytest.mark.covers("fanuc.paramtype.bit", "fanuc.paramtype.word")
 def test_parameters_of_bits_and_words_act() -> None:
     control, handle = attached()
     assert fwlib.cnc_wrparam(handle, 5, psd(3202, 0, cdata=0x11)) == OK
@@ -232,6 +237,10 @@ def test_parameters_of_bits_and_words_act() -> None:
 @pytest.mark.parametrize(("number", "size"), [(3202, 1), (6710, 1), (1410, 2), (6711, 4)])
 @pytest.mark.covers("fanuc.cnc_rdparar")
 @pytest.mark.covers("fanuc.struct.ODBPARAIF")
+@pytest.mark.covers("fanuc.concept.param_record_stream")
+@pytest.mark.covers(
+    "fanuc.enum.prm_attr.0", "fanuc.enum.prm_attr.1", "fanuc.enum.prm_attr.2", "fanuc.enum.prm_attr.3"
+)
 def test_types_of_parameters_are_the_bytes_of_their_records(number: int, size: int) -> None:
     control, handle = attached()
     code, info = fwlib.cnc_rdparainfo(handle, number, 1)
@@ -254,6 +263,15 @@ def test_types_of_parameters_are_the_bytes_of_their_records(number: int, size: i
 )  # fmt: skip
 @pytest.mark.covers("fanuc.cnc_diagnoss")
 @pytest.mark.covers("fanuc.ODBDGN")
+@pytest.mark.covers(
+    "fanuc.diag.kind.byte",
+    "fanuc.diag.kind.byte_axis",
+    "fanuc.diag.kind.word",
+    "fanuc.diag.kind.word_axis",
+    "fanuc.diag.kind.2word",
+    "fanuc.diag.kind.2word_axis",
+)
+@pytest.mark.covers("fanuc.diag.axis.0", "fanuc.diag.axis.-1")
 def test_diagnosis_data_of_a_control_that_moves() -> None:
     control, handle = attached()
     registered(control, O7="\nG1X20.Y-10.F3000\nM30\n")
@@ -283,9 +301,10 @@ def test_diagnosis_data_of_a_control_that_moves() -> None:
 @pytest.mark.covers("fanuc.cnc_rdseqnum")
 @covers("ODBDY.pos.faxis.absolute", "ODBDY.pos.faxis.machine", "ODBDY.pos.faxis.relative", "ODBSEQ.data")
 @pytest.mark.covers("fanuc.struct.ODBDY", "fanuc.struct.ODBSEQ")
+@pytest.mark.covers("fanuc.concept.axis_number")
 def test_positions_of_all_axes_at_once() -> None:
     control, handle = attached()
-    control.control.offsets.set("G54", {"X": 2.0, "Y": -1.0})
+    control.control.offsets.set("G54", {"X": 2.0, "Y": -1.0, "Z": 0.25})
     control.positions.preset_relative({3: 500})
     registered(control, O7="\nN25G54G1X6.Y3.Z-1.F6000\nM30\n")
     running(control, 7)
@@ -294,7 +313,10 @@ def test_positions_of_all_axes_at_once() -> None:
     assert code == OK
     every, places = data.pos.faxis, control.positions.read()
     assert list(every.machine)[:3] == [each.machine for each in places]
-    assert list(every.absolute)[:3] == [places[0].machine - 2000, places[1].machine + 1000, places[2].machine]
+    offsets = (2000, -1000, 250)
+    assert list(every.absolute)[:3] == [
+        place.machine - offset for place, offset in zip(places, offsets, strict=True)
+    ]
     assert list(every.relative)[:3] == [places[0].machine, places[1].machine, places[2].machine + 500]
     assert places[2].machine < 0 < places[0].machine
     assert fwlib.cnc_rdseqnum(handle)[1].data == data.seqnum == 25
@@ -303,6 +325,7 @@ def test_positions_of_all_axes_at_once() -> None:
 @covers("ODBM.datano", "ODBM.mcr_val", "ODBTOFS.datano", "ODBTOFS.type", "ODBTOFS.data", "PRGDIR.prg_data")
 @pytest.mark.covers("fanuc.cnc_rdmacro", "fanuc.cnc_rdprogdir", "fanuc.cnc_rdtofs")
 @pytest.mark.covers("fanuc.struct.ODBM", "fanuc.struct.ODBTOFS", "fanuc.struct.PRGDIR")
+@pytest.mark.covers("fanuc.format.progdir_type0", "fanuc.concept.macro_empty")
 def test_variables_offsets_and_the_directory() -> None:
     control, handle = attached()
     control.macros.set(502, -12.75)
@@ -366,6 +389,7 @@ def test_modules_of_the_control() -> None:
 
 @covers("cnc_refpoint")
 @pytest.mark.parametrize("axis", [1, 2, 3])
+@pytest.mark.covers("fanuc.concept.direct_command")
 def test_the_axis_that_is_named_goes_to_its_reference_position(axis: int) -> None:
     control, handle = attached()
     control.parameters.set(8003, 1 << 7)
@@ -397,6 +421,7 @@ VALUES = {
 
 
 @pytest.mark.parametrize("name", [pytest.param(each, marks=covers(each)) for each in CODES])
+@pytest.mark.covers("fanuc.concept.return_convention")
 def test_a_call_answers_the_code_of_the_manual(name: str) -> None:
     control, handle = attached()
     if name == "EW_PARAM":
@@ -408,6 +433,7 @@ def test_a_call_answers_the_code_of_the_manual(name: str) -> None:
 
 @covers("EW_NOOPT")
 @pytest.mark.covers("fanuc.cnc_rdopmsg")
+@pytest.mark.covers("fanuc.common.allmode")
 def test_an_option_that_is_not_fitted_is_refused() -> None:
     control = PowerMate(options=("pmc_axis",))
     fwlib.detach()
@@ -421,6 +447,9 @@ def test_an_option_that_is_not_fitted_is_refused() -> None:
 @pytest.mark.parametrize("axes", [1, 2, 3, 4, 5, 6])
 @pytest.mark.covers("fanuc.cnc_sysconfig")
 @pytest.mark.covers("fanuc.ODBSYSC")
+@pytest.mark.covers(
+    "fanuc.ODBSYSC.sv3min.0", "fanuc.ODBSYSC.sv3min.-1", "fanuc.ODBSYSC.sv5min.0", "fanuc.ODBSYSC.sv5min.-1"
+)
 def test_servo_modules_are_there_for_every_pair_of_axes(axes: int) -> None:
     found = fwlib.cnc_sysconfig(attached(axes=axes)[1])[1]
     assert (found.sv3min, found.sv5min) == (0 if axes > 2 else -1, 0 if axes > 4 else -1)

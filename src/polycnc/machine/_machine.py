@@ -189,7 +189,7 @@ class Machine:
             raise UsageError(f"axis {axis} cannot move like that", hint="Give a finite speed above zero.")
 
     def change_axes(self, axes: tuple[AnyAxis, ...]) -> None:
-        """Let the axes have these speeds, accelerations, limits and switches from now on, while they stand.
+        """Let the axes have these speeds, accelerations, limits, switches and servos from now on, while they stand.
 
         Raises:
             UsageError: Other axes than the machine has, or a path moves them.
@@ -204,6 +204,8 @@ class Machine:
         for index, axis in enumerate(axes):
             self._set_axis(index, axis.vmax, axis.amax, axis.jump, axis.kind == "linear")
             self._set_switches(index)
+            if axis.servo.kind == "pidf" and self.state.servo.row[index]["mode"] == PIDF:
+                self._set_servo(index)
 
     # ------------------------------------------------------------------ memory
 

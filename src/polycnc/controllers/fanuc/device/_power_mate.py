@@ -14,6 +14,7 @@ from polycnc.controllers.fanuc.data._bindings import bound
 from polycnc.controllers.fanuc.data._configuration import Configuration
 from polycnc.controllers.fanuc.data._increment import Increment
 from polycnc.controllers.fanuc.data._macro_variables import CommonRange, SharedMacros
+from polycnc.controllers.fanuc.data._parameter_rows import ParameterRow
 from polycnc.controllers.fanuc.data._parameters import Parameters
 from polycnc.controllers.fanuc.data._tool_offsets import ToolOffsets
 from polycnc.controllers.fanuc.device._axis_motion import AxisMotion
@@ -32,7 +33,7 @@ from polycnc.controllers.fanuc.device._positions import Positions
 from polycnc.controllers.fanuc.device._power import Fitted, Power
 from polycnc.controllers.fanuc.device._programs import Programs, memory_data, name_of
 from polycnc.controllers.fanuc.device._remote_program import RemoteProgram
-from polycnc.controllers.fanuc.device._signals import Buttons, Signals
+from polycnc.controllers.fanuc.device._signals import F0_PARAMETERS, Buttons, Signals
 from polycnc.controllers.fanuc.device._skip_signal import SkipSignal
 from polycnc.controllers.fanuc.device._snapshot import PowerMateSnapshot
 from polycnc.controllers.fanuc.device._transfer import Transfer
@@ -83,7 +84,7 @@ class PowerMate:
         begun = defaults(default_names(self.axes, rotary), Increment(increment), inch_input, inch_output)
         elsewhere = bound(lambda: self.control, lambda: self.units)
         self.parameters = parameters = Parameters(
-            store, self.axes, begun, elsewhere, lambda rows: self.power.parameters_changed(rows)
+            store, self.axes, begun, elsewhere, lambda rows: _parameters_changed(self, rows)
         )
         self.state = state = DeviceState.of(self.max_axis, parameters.bit(0, 2))
         """What does not outlast switching off."""
@@ -340,6 +341,12 @@ class PowerMate:
         languages = (self.custom_macros.language,) if self.has_option(MACRO_OPTION) else ()
         self.power.switch_on(before, languages, self.skip.noting())
         self.control.set_observer(self.history)
+
+
+def _parameters_changed(it: PowerMate, rows: tuple[ParameterRow, ...]) -> None:
+    it.power.parameters_changed(rows)
+    if any(row.number in F0_PARAMETERS for row in rows):
+        it.signals.apply_overrides()
 
 
 __all__ = ["PowerMate"]

@@ -39,6 +39,7 @@ _HANDLE = 4  # the handle or, where there is none, increments
 _JOGS = frozenset({_M.JOG, _M.T_JOG, _M.INC})
 RAPID_STEPS = {0: 1.0, 1: 0.5, 2: 0.25}
 F0 = 3
+F0_PARAMETERS = frozenset({1420, 1421})
 _INCREMENTS = (1, 10, 100, 1000)
 _FIN, _ST = 1 << 3, 1 << 2
 _RT = 1 << 7
