@@ -162,8 +162,7 @@ class _WatchedSolid:
         self.level = 1.0 / _SHARES
         x, y, z = (solid.first + 0.5 * (several - 1) * solid.cell_mm).tolist()
         self.first_mm = (x, y, z)
-        self._wide_mm = max((tool.radius_mm for tool in tools.values()), default=0.0) + solid.cell_mm
-        self._long_mm = float(np.linalg.norm(np.subtract(solid.box.high, solid.box.low)))
+        self._wide_mm = max((tool.radius_mm for tool in tools.values()), default=0.0)
         self._before = solid.cells.copy()
         self._left = self._sums(solid.cells)
         self._all = Voxels.FULL * self._sums(np.ones_like(solid.cells))
@@ -171,7 +170,8 @@ class _WatchedSolid:
 
     def changes(self, course: Rows, first: int, last: int) -> tuple[Places, Levels]:
         """Return flat places and levels of cells that rows of a course have changed."""
-        part = self._reached(course, first, last)
+        axes = np.broadcast_to(course.axis, course.tip.shape)[first:last]
+        part = self._solid.reached(course.tip[first:last], axes, self._wide_mm)
         now, before = self._solid.cells[part], self._before[part]
         gone = np.argwhere(now != before)
         if not len(gone):
@@ -183,17 +183,6 @@ class _WatchedSolid:
         cells = np.unique(flat)
         np.subtract.at(self._left.ravel(), flat, taken)
         return cells.astype(np.int32), self._levels(cells)
-
-    def _reached(self, course: Rows, first: int, last: int) -> tuple[slice, slice, slice]:
-        """Return the points, along z, y and x, around the axis of a tool that is as long as the body."""
-        tips = course.tip[first:last]
-        axes = np.broadcast_to(course.axis, course.tip.shape)[first:last]
-        ends = np.concatenate((tips, tips + self._long_mm * axes)) - self._solid.first
-        low, high = ends.min(axis=0) - self._wide_mm, ends.max(axis=0) + self._wide_mm
-        x, y, z = (
-            _between(low[i], high[i], self._solid.cell_mm, self._solid.cells.shape[2 - i]) for i in range(3)
-        )
-        return z, y, x
 
     def _sums(self, cells: npt.NDArray[np.uint8]) -> npt.NDArray[np.int64]:
         n = self._several
