@@ -28,6 +28,7 @@ _NOUN = re.compile(r"mill\b|drill\b|cutter\b|reamer\b", re.IGNORECASE)
 _CALLED = re.compile(
     r"^\s*(?:tool|bit|cutter)\s*(?:[:=]|->)\s*[\d./]+\s*(?:mm|in|inch|\")\s*$", re.IGNORECASE
 )
+_SIZE_ALONE = re.compile(rf"^\s*T\d+\s*[:=]\s*{_NUMBER}\s*$", re.IGNORECASE)
 _ROUND = re.compile(rf"\bD(?:IA\.?)? ?\d[\d.]*\s*R ?{_NUMBER}", re.IGNORECASE)
 _STATEMENT = re.compile(r"^\s*TOOL/(MILL|DRILL|CHAMFER)\s*,(.*)", re.IGNORECASE)
 _CORNER = re.compile(rf"\bCR\s*[=:]\s*{_NUMBER}", re.IGNORECASE)
@@ -95,9 +96,7 @@ def _of_words(remark: str, inch: bool) -> Tool | None:
     """Return the tool of a size beside a word for a kind, of `D=`, or of `DIA` where the remark names the tool."""
     kind = next((kind for pattern, kind in _KINDS if pattern.search(remark)), None)
     size = _diameter_mm(remark, inch)
-    is_named = tool_number(remark) is not None and _OF_NAMED.search(remark) is not None
-    is_said = is_named or _DIAMETER.search(remark) or _CALLED.search(remark) or _is_size_alone(remark)
-    if size is None or (kind is None and not is_said):
+    if size is None or (kind is None and not _is_of_tool(remark)):
         return None
     found = _CORNER.search(remark) or _ROUND.search(remark)
     corner = float(found[1]) * (MM_PER_INCH if inch else 1.0) if found else 0.0
@@ -157,6 +156,8 @@ def _diameter_mm(remark: str, inch: bool) -> float | None:
     return size
 
 
-def _is_size_alone(remark: str) -> bool:
-    """Tell whether a remark is the number of a tool and its size, as in `T1 : 6.0`."""
-    return re.fullmatch(rf"\s*T\d+\s*[:=]\s*{_NUMBER}\s*", remark, re.IGNORECASE) is not None
+def _is_of_tool(remark: str) -> bool:
+    """Tell whether the size in a remark is that of a tool though no word says its kind, as in `T1 : 6.0`."""
+    if tool_number(remark) is not None and _OF_NAMED.search(remark):
+        return True
+    return any(pattern.search(remark) for pattern in (_DIAMETER, _CALLED, _SIZE_ALONE))
