@@ -209,15 +209,19 @@ def leave_out_rapids(body: Voxels, course: Rows, tools: Mapping[int, Tool]) -> N
     """Take from a body what tools go through at rapid before they have cut it: an `auto` body has nothing there."""
     trial = body.copy()
     cutting = TurnedCutting(trial, tools)
+    wide_mm = max((tool.radius_mm for tool in tools.values()), default=0.0)
+    axis = np.broadcast_to(course.axis, course.tip.shape)
     for first, last in runs(course.rapid.astype(np.int64)):
-        rows = course.at(np.arange(first, last))
+        rows = course.at(slice(first, last))
         if not course.rapid[first]:
             cutting.add(rows)
             continue
-        before, removed = trial.cells.copy(), sum(cutting.tally.by_tool_mm3.values())
+        come = slice(max(first - 1, 0), last)
+        part = body.reached(course.tip[come], axis[come], wide_mm)
+        now, left = trial.cells[part], body.cells[part]
+        before = now.copy()
         cutting.add(rows)
-        if sum(cutting.tally.by_tool_mm3.values()) > removed:
-            body.cells -= np.minimum(before - trial.cells, body.cells)
+        left -= np.minimum(before - now, left)
 
 
 def around_turned(course: Rows) -> tuple[float, float, float]:

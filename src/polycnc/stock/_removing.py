@@ -14,9 +14,9 @@ from polycnc.stock._ways import runs
 
 
 class Removing:
-    """Let tools cut a body along the rows of a course; a tool that is not among `tools` cuts nothing."""
+    """Let tools cut a body along a course, as far as is asked; a tool that is not among `tools` cuts nothing."""
 
-    def __init__(self, stock: Stock, tools: Mapping[int, Tool]) -> None:
+    def __init__(self, stock: Stock, tools: Mapping[int, Tool], course: Rows) -> None:
         self._stock = stock
         self._outlines = {
             number: (
@@ -26,18 +26,22 @@ class Removing:
             )
             for number, tool in tools.items()
         }
-        self._tip, self._tool = np.zeros((0, 3)), np.zeros(0, np.int64)
+        self._tip = np.ascontiguousarray(course.tip)
+        # Another tool has not come the way to its first row.
+        same = course.tool[1:] == course.tool[:-1]
+        way = np.where(same, 2 * course.tool[1:] + course.rapid[1:], -1)
+        self._ways = [(int(way[first]), last) for first, last in runs(way)] if len(way) else []
+        self._next, self._at = 0, 0
 
-    def add(self, rows: Rows) -> None:
-        """Take the next rows; the tool comes from where the last ones ended."""
-        begun = len(self._tool)
-        tip, tool = np.concatenate((self._tip, rows.tip)), np.concatenate((self._tool, rows.tool))
-        self._tip, self._tool = tip[-1:], tool[-1:]
-        # Another tool has not come that way.
-        number, rapid = np.where(tool[1:] == tool[:-1], tool[1:], -1), rows.rapid[1 - begun :]
-        for first, last in runs(2 * number + rapid):
-            outlines = self._outlines.get(int(number[first]))
-            if outlines is not None:
-                places = np.ascontiguousarray(tip[first : last + 1])
-                cutter, figures = outlines[int(rapid[first])], np.zeros((last - first, FIGURES))
+    def up_to(self, row: int) -> None:
+        """Cut from where the tool is to a row of the course."""
+        while self._at < row and self._next < len(self._ways):
+            way, last = self._ways[self._next]
+            first, last = self._at, min(last, row)
+            self._at = last
+            self._next += last == self._ways[self._next][1]
+            outlines = self._outlines.get(way // 2)
+            places = self._tip[first : last + 1]
+            if outlines is not None and places[:, 2].min() < self._stock.box.high[2]:
+                cutter, figures = outlines[way % 2], np.zeros((last - first, FIGURES))
                 sweep(self._stock.grid, places, cutter, cutter[:0], figures, figures)

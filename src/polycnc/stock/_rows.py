@@ -42,7 +42,7 @@ class Rows:
             return np.ascontiguousarray(self.tip)
         return np.concatenate((self.tip, self.tip + ARM_MM * self.axis), axis=1)
 
-    def at(self, places: Integers) -> Rows:
+    def at(self, places: Integers | slice) -> Rows:
         """Return the rows at these places."""
         return Rows(*(column[places] for column in self.columns()))
 

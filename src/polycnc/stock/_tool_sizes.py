@@ -8,7 +8,7 @@ import re
 MM_PER_INCH = 25.4
 
 _WITH_UNIT = re.compile(
-    r"(?<![\d.,/])(?:(?P<whole>\d+)[ -]+)?(?:(?P<over>\d+)/(?P<under>\d+)|(?P<size>\d+(?:[.,]\d*)?|\.\d+))"
+    r"(?<![\d.,/])(?:(?P<whole>\d+)[ -])?(?:(?P<over>\d+)/(?P<under>\d+)|(?P<size>\d+(?:[.,]\d*)?|\.\d+))"
     r"\s*-?(?P<unit>mm|inch(?:es)?|in|\")(?![a-z])",
     re.IGNORECASE,
 )
@@ -35,15 +35,37 @@ _NUMBER_DRILL = re.compile(
 _LETTER_DRILL = re.compile(
     r"\bletter[ -]+(?P<a>[A-Z])\b|\bdrill[ -]+letter[ -]+(?P<b>[A-Z])\b", re.IGNORECASE
 )
+_FOREIGN_TAP = r"(?:gewindebohrer|\bmaschio|\btaraud)"
 _THREAD = r"M(?P<{0}>\d{{1,2}}(?:\.\d)?)"
 _METRIC_TAP = re.compile(  # M3 alone may be a code
-    rf"\b{_THREAD.format('a')}\s*x\s*\d?\.?\d|\b{_THREAD.format('b')}[ -]+tap|\btap[ -]+{_THREAD.format('c')}\b",
+    rf"\b{_THREAD.format('a')}\s*x\s*\d?\.?\d|\b{_THREAD.format('b')}[ -]+tap"
+    rf"|(?:\btap|{_FOREIGN_TAP})[ -]+{_THREAD.format('c')}\b",
     re.IGNORECASE,
 )
 _FRACTION_TAP = re.compile(rf"(?<![\w.,/#-])(?P<whole>\d[ -]+)?{_PART}-\d\d?\b", re.IGNORECASE)
 _NUMBER_TAP = re.compile(r"(?<![\w./])#?(?P<size>\d\d?)-\d\d\b")
-_TAP = re.compile(r"\btap(?:ping)?\b(?![ -]*drill)", re.IGNORECASE)
+_TAP = re.compile(rf"\btap(?:ping)?\b(?![ -]*drill)|{_FOREIGN_TAP}", re.IGNORECASE)
 _CENTRE = re.compile(r"\bcent(?:er|re)\b", re.IGNORECASE)
+
+# In a remark that names a tool, numbers without a unit are its size where they begin or end a part of the remark.
+_SHAPE = (
+    r"(?:(?:end|face|slot|ball|spot|cent(?:er|re))[ -]?)?(?:mill|drill|ream(?:er)?)\b(?![ -]*holes)"
+    r"|(?:\w*fr(?:ä|ae|a|\ufffd)ser|\w*bohrer|fresa|fraise|foret|broca|punta)\b"
+)
+_ADJECTIVES = (
+    r"(?:(?:rough|finish|std|standard|flat|ball|bull|nose|carbide|hss|square|stub|long|twist)\w*[ -]+){0,3}"
+)
+_ENDS = r"\s*(?=$|[|,;)])"
+_BARE = (
+    re.compile(
+        rf"(?:^|[|:,;(=-])\s*(?P<size>\d+\.\d*|\.\d+|[1-5]?\d)[ -]+{_ADJECTIVES}(?:{_SHAPE})", re.IGNORECASE
+    ),
+    re.compile(rf"(?:{_SHAPE})[ -]+(?P<size>\d+\.\d*|\.\d+|(?<=- )\d+|\d+(?=\s*\|)){_ENDS}", re.IGNORECASE),
+    re.compile(rf"^\s*[:=]\s*(?P<size>\d+\.\d*|\.\d+){_ENDS}$"),
+)
+_D_WORD = re.compile(r"(?<![A-Za-z0-9.])D ?(?P<size>\d+(?:[.,]\d*)?)(?![\d.]|\s*[=:])", re.IGNORECASE)
+_BESIDE_SHAPE = re.compile(rf"(?:{_SHAPE})[ _-]*D ?\d|\bD ?[\d.,]+[ _-]+(?:{_SHAPE})", re.IGNORECASE)
+_LENGTH_OFFSET = re.compile(r"\bH ?\d", re.IGNORECASE)
 
 # fmt: off
 _THOUSANDTHS_OF_NUMBERS = (
@@ -81,6 +103,21 @@ def size_mm(remark: str, *, inch: bool = False) -> float | None:
         if found := pattern.search(remark):
             return float(found["size"]) * MM_PER_INCH
     return None
+
+
+def bare_size(remark: str, number: int | None) -> float | None:
+    """Return the diameter without a unit that a remark, without the number of its tool, gives; None if it gives none.
+
+    That is `D10` beside a word for a shape, and in a remark that names a tool `10. flat endmill` or `end mill - 10`.
+    """
+    if (found := _D_WORD.search(remark)) and not _LENGTH_OFFSET.search(remark):  # beside H it is an offset
+        size = float(found["size"].replace(",", "."))
+        if (number is None or size != number) and (number is not None or _BESIDE_SHAPE.search(remark)):
+            return size
+    if number is None:
+        return None
+    sizes = (pattern.search(remark) for pattern in _BARE)
+    return next((float(each["size"]) for each in sizes if each), None)
 
 
 def _fraction(found: re.Match[str]) -> float:

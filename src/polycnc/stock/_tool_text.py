@@ -8,20 +8,28 @@ from dataclasses import replace
 
 from polycnc.errors import UsageError
 from polycnc.stock._tool import Tool, ToolKind
-from polycnc.stock._tool_sizes import MM_PER_INCH, size_mm
+from polycnc.stock._tool_sizes import MM_PER_INCH, bare_size, size_mm
 
 _NUMBERED = re.compile(
-    r"\bT(?:OOL(?:\s+-)?)?\s*[#:]?\s*0*(\d{1,9})\b(?!/)|^\s*0*(\d{1,9}) = (?=[A-Za-z])", re.IGNORECASE
+    r"\bT(?:OOL(?:\s+(?:-|NO\b\.?|\())?)?\s*[#:]?\s*0*(\d{1,9})\b\)?(?!/|\.\d|\s*(?:mm\b|inch\b|in\.?\s*$|\"))"
+    r"|^\s*0*(\d{1,9}) = (?=[A-Za-z])",
+    re.IGNORECASE,
 )
 _NUMBER = r"(\d+(?:\.\d*)?(?![\d.]*e[-+]?\d)|\.\d+)"
 _DIAMETER = re.compile(
-    rf"\bD(?:IA(?:M(?:ETER)?)?)?\s*[=:]\s*{_NUMBER}(?:\s*(mm|in)(?![a-z]))?", re.IGNORECASE
+    rf"(?:\bD(?:IA(?:M(?:ETER)?)?)?\s*[=:]|\btool[ _]?dia(?:meter)?\"?\s*[=:]?)\s*{_NUMBER}(?:\s*(mm|in)(?![a-z]))?",
+    re.IGNORECASE,
 )
 _OF_NAMED = re.compile(
     rf"\bDIA\.?\s+(?:-\s+)?{_NUMBER}|{_NUMBER}\s*DIA\b(?!\.?\s*(?:-|OFF))",
     re.IGNORECASE,
 )
 _NOUN = re.compile(r"mill\b|drill\b|cutter\b|reamer\b", re.IGNORECASE)
+_CALLED = re.compile(
+    r"^\s*(?:tool|bit|cutter)\s*(?:[:=]|->)\s*[\d./]+\s*(?:mm|in|inch|\")\s*$", re.IGNORECASE
+)
+_SIZE_ALONE = re.compile(rf"^\s*T\d+\s*[:=]\s*{_NUMBER}\s*$", re.IGNORECASE)
+_ROUND = re.compile(rf"\bD(?:IA\.?)? ?\d[\d.]*\s*R ?{_NUMBER}", re.IGNORECASE)
 _STATEMENT = re.compile(r"^\s*TOOL/(MILL|DRILL|CHAMFER)\s*,(.*)", re.IGNORECASE)
 _CORNER = re.compile(rf"\bCR\s*[=:]\s*{_NUMBER}", re.IGNORECASE)
 _ANGLE = re.compile(
@@ -30,6 +38,7 @@ _ANGLE = re.compile(
 _UNLIKE = re.compile(
     r"\bprob(?:e|ing)\b|thread[ -]?mill|\bt[ -]slot|dove[ -]?tail|lollipop|undercut|woodruff|key(?:seat|way|slot)"
     r"|\b(?:bolts?|circle)\b.*\bdia"
+    r"|gewindefr|schwalbenschwanz|\bt[ -]nut|radienfr"
     r"|\bradius mill|corner round|\bround[ -]?over|\bform (?:mill|tool|cutter)|\bogee\b|\bcove\b",
     re.IGNORECASE,
 )
@@ -40,12 +49,17 @@ _CHAMFER_DEG = 90.0
 _MOST_FLANK_DEG = 60.0
 _ALL_ROUND = 0.49  # of the diameter: the corner of a ball, rounded
 _KINDS = (
-    (re.compile(r"\bball|\bspherical", re.IGNORECASE), ToolKind.BALL),
-    (re.compile(r"\bbull|\bcorner radius|\btoroid", re.IGNORECASE), ToolKind.BULL),
-    (re.compile(r"chamfer|v-?bit|engrav|counter ?sink|spot", re.IGNORECASE), ToolKind.CHAMFER),
-    (re.compile(r"drill|\btap\b|\bream", re.IGNORECASE), ToolKind.DRILL),
+    (re.compile(r"\bball|\bspherical|kugelfr|\bsferic", re.IGNORECASE), ToolKind.BALL),
+    (re.compile(r"\bbull|\bcorner radius|\btoroid|torusfr", re.IGNORECASE), ToolKind.BULL),
+    (re.compile(r"chamfer|v-?bit|engrav|counter ?sink|spot|fasenfr|senker", re.IGNORECASE), ToolKind.CHAMFER),
+    (
+        re.compile(r"drill|\btap\b|\bream|bohrer\b|\b(?:foret|broca|punta|maschio|taraud)\b", re.IGNORECASE),
+        ToolKind.DRILL,
+    ),
     (re.compile(r"taper", re.IGNORECASE), ToolKind.TAPER),
     (re.compile(r"(?:\b|end|face|slot)mill|cutter|\bflat|\bslot", re.IGNORECASE), ToolKind.FLAT),
+    (re.compile(r"fr(?:ä|ae|a|\ufffd)ser|\bfresa\b|\bfraise\b", re.IGNORECASE), ToolKind.FLAT),
+    (re.compile(r"\b(?:up|down)[ -]?cut\b|\bcompression\b|\brouter bit", re.IGNORECASE), ToolKind.FLAT),
     (re.compile(r"\bbor(?:e|ing)[ -]?(?:bar|head|tool)s?\b", re.IGNORECASE), ToolKind.BORING),
     (re.compile(r"\bholes?\b", re.IGNORECASE), ToolKind.DRILL),
 )
@@ -82,10 +96,10 @@ def _of_words(remark: str, inch: bool) -> Tool | None:
     """Return the tool of a size beside a word for a kind, of `D=`, or of `DIA` where the remark names the tool."""
     kind = next((kind for pattern, kind in _KINDS if pattern.search(remark)), None)
     size = _diameter_mm(remark, inch)
-    is_named = tool_number(remark) is not None and _OF_NAMED.search(remark) is not None
-    if size is None or (kind is None and not is_named and not _DIAMETER.search(remark)):
+    if size is None or (kind is None and not _is_of_tool(remark)):
         return None
-    corner = float(found[1]) * (MM_PER_INCH if inch else 1.0) if (found := _CORNER.search(remark)) else 0.0
+    found = _CORNER.search(remark) or _ROUND.search(remark)
+    corner = float(found[1]) * (MM_PER_INCH if inch else 1.0) if found else 0.0
     angle = float(found[1] or found[2]) if (found := _ANGLE.search(remark)) else 0.0
     kind = kind or ToolKind.FLAT
     if kind is ToolKind.CHAMFER and angle <= _MOST_FLANK_DEG and "chamfer" in remark.lower():
@@ -136,4 +150,14 @@ def _diameter_mm(remark: str, inch: bool) -> float | None:
     named = _OF_NAMED.search(rest) if rest != remark or _NOUN.search(rest) else None
     if named is not None and (size := named[1] or named[2]):
         return float(size) * (MM_PER_INCH if inch else 1.0)
-    return size_mm(rest, inch=inch)
+    size = size_mm(rest, inch=inch)
+    if size is None and (bare := bare_size(rest, tool_number(remark))) is not None:
+        return bare * (MM_PER_INCH if inch else 1.0)
+    return size
+
+
+def _is_of_tool(remark: str) -> bool:
+    """Tell whether the size in a remark is that of a tool though no word says its kind, as in `T1 : 6.0`."""
+    if tool_number(remark) is not None and _OF_NAMED.search(remark):
+        return True
+    return any(pattern.search(remark) for pattern in (_DIAMETER, _CALLED, _SIZE_ALONE))

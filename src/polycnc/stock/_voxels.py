@@ -96,6 +96,29 @@ class Voxels:
             return False
         return 2 * int(self.cells[at[2], at[1], at[0]]) > FULL
 
+    def reached(self, tips: Floats, axes: Floats, radius_mm: float) -> tuple[slice, slice, slice]:
+        """Return the cells, along z, y and x, that a tool as long as the body is near to on its way.
+
+        `tips` and `axes` [rows, 3] are its ends and directions, upwards.
+        """
+        long_mm = float(np.linalg.norm(np.subtract(self.box.high, self.box.low)))
+        ends = np.concatenate((tips, tips + long_mm * axes)) - self.first
+        wide_mm = radius_mm + self.cell_mm
+        low, high = (
+            (ends.min(axis=0) - wide_mm) // self.cell_mm,
+            (ends.max(axis=0) + wide_mm) // self.cell_mm + 1,
+        )
+        sizes = np.array(self.cells.shape[::-1])
+        x, y, z = (
+            slice(*each)
+            for each in zip(
+                np.clip(low, 0, sizes).astype(int).tolist(),
+                np.clip(high, 0, sizes).astype(int).tolist(),
+                strict=True,
+            )
+        )
+        return z, y, x
+
     def mesh(self) -> Mesh:
         """Return the surface as triangles: where cells are half full between them."""
         return surface_of(self.cells, self.first, self.cell_mm)

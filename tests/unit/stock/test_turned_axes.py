@@ -24,6 +24,7 @@ from polycnc.stock import (
     Voxels,
     check_closed,
 )
+from polycnc.stock._auto import leave_out_rapids
 
 BOX = Box((-10.0, -8.0, -9.0), (11.0, 9.0, 0.5))
 MILL = Tool(ToolKind.FLAT, 6.0, flute_mm=30.0)
@@ -229,3 +230,19 @@ def test_what_no_body_of_points_has_is_refused(wrong: Any, text: str) -> None:
     with pytest.raises(UsageError, match=text) as refused:
         wrong()
     assert refused.value.hint
+
+
+def test_what_rapids_leave_of_an_auto_body_is_found_where_they_are(monkeypatch: pytest.MonkeyPatch) -> None:
+    axis, cell = tilted(25.0), 0.5
+    places = [(-30.0, -3.0, 20.0), (-9.0, -3.0, -2.0), (-9.0, 3.0, -2.0), (-9.0, 3.0, 20.0), (9.0, 4.0, -3.0)]
+    course = record(places, [axis] * 5, [True, True, False, True, True])
+    body = Voxels(BOX, cell)
+    near, everywhere = body.copy(), body.copy()
+    part = body.reached(course.tip[:2], np.array([axis, axis]), MILL.radius_mm)
+    assert body.cells[part].size < 0.6 * body.cells.size  # the cost of a rapid is that of its own way
+    leave_out_rapids(near, course, {4: MILL})
+    whole = (slice(None), slice(None), slice(None))
+    monkeypatch.setattr(Voxels, "reached", lambda *_: whole)
+    leave_out_rapids(everywhere, course, {4: MILL})
+    assert 100.0 < body.volume_mm3 - near.volume_mm3 < 0.5 * body.volume_mm3
+    assert np.array_equal(near.cells, everywhere.cells)

@@ -41,13 +41,13 @@ def film_of(machined: Machined) -> Film:
     coarser = 1
     while True:
         body, cuts = watched(machined, coarser)
-        film = _film(machined.course, body, cuts.add)
+        film = _film(machined.course, body, cuts)
         if film is not None:
             return film
         coarser *= 2
 
 
-def _film(course: Rows, body: Watched, cut: Callable[[Rows], None]) -> Film | None:
+def _film(course: Rows, body: Watched, cut: Callable[[int, int], None]) -> Film | None:
     """Cut a body once more, step by step; None if that has more changes than a page can bear."""
     begin = body.begin.copy()
     step_s = max(float(course.t_s[-1]) / _STEPS, 1e-3) if len(course.t_s) else 1.0
@@ -55,7 +55,7 @@ def _film(course: Rows, body: Watched, cut: Callable[[Rows], None]) -> Film | No
     ends, counts, all_cells, all_levels = [], [], [], []
     total = 0
     for first, last in zip(bounds[:-1].tolist(), bounds[1:].tolist(), strict=True):
-        cut(course.at(np.arange(first, last)))
+        cut(first, last)
         cells, levels = body.changes(course, max(first - 1, 0), last)
         if not len(cells):
             continue

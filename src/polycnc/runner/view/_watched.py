@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 from typing import Protocol
 
@@ -50,21 +50,30 @@ class Watched(Protocol):
         ...
 
 
-def watched(machined: Machined, coarser: int) -> tuple[Watched, Removing | TurningCutting | TurnedCutting]:
-    """Return the body of a run as it was, in cells `coarser` times as wide as need be, and what cuts it again."""
+def watched(machined: Machined, coarser: int) -> tuple[Watched, Callable[[int, int], None]]:
+    """Return the body of a run as it was, in cells `coarser` times as wide as need be, and what cuts it again.
+
+    That is called with the first row of the course and the one after the last.
+    """
     form, course, tools = machined.form, machined.course, machined.rotating
+    cutting: TurningCutting | TurnedCutting
     if isinstance(machined.stock, Turned):
         bar = form.turned_body(course)
         several = coarser * max(1, -(-len(bar.outer) // MOST_ALONG))
-        return _WatchedBar(bar, several), TurningCutting(bar, machined.tools)
+        cutting = TurningCutting(bar, machined.tools)
+        return _WatchedBar(bar, several), lambda first, last: cutting.add(course.at(slice(first, last)))
     if isinstance(machined.stock, Voxels):
         whole = machined.stock
         longest = max(high - low for low, high in zip(whole.box.low, whole.box.high, strict=True))
         solid = replace(form, cell_mm=max(whole.cell_mm, longest / (2 * MOST_THROUGH))).voxels(course, tools)
-        return _WatchedSolid(solid, 2 * coarser, tools), TurnedCutting(solid, tools)
-    stock = form.body(course, tools)
+        cutting = TurnedCutting(solid, tools)
+        picture = _WatchedSolid(solid, 2 * coarser, tools)
+        return picture, lambda first, last: cutting.add(course.at(slice(first, last)))
+    was = machined.stock
+    stock = Stock(was.box, was.cell_mm) if form.text == "auto" else form.body(course, tools)
     several = coarser * max(1, -(-max(stock.heights.shape) // MOST_ACROSS))
-    return _WatchedField(stock, several, tools), Removing(stock, tools)
+    removing = Removing(stock, tools, course)
+    return _WatchedField(stock, several, tools), lambda _, last: removing.up_to(last - 1)
 
 
 class _WatchedField:
@@ -74,7 +83,7 @@ class _WatchedField:
 
     def __init__(self, stock: Stock, several: int, tools: Mapping[int, Tool]) -> None:
         grid = stock.grid
-        self._grid, self._several = grid, several
+        self._grid, self._several, self._top = grid, several, stock.box.high[2]
         self.cell_mm = several * grid.cell_mm
         self.level = max(stock.box.high[2] - grid.bottom, 1e-9) / _HEIGHTS
         middle = 0.5 * (several - 1) * grid.cell_mm
@@ -87,10 +96,12 @@ class _WatchedField:
     def changes(self, course: Rows, first: int, last: int) -> tuple[Places, Levels]:
         """Return flat places and levels of cells that rows of a course have changed."""
         tips, (ny, nx) = course.tip[first:last], self._shown.shape
-        low, high = tips[:, :2].min(axis=0) - self._reach, tips[:, :2].max(axis=0) + self._reach
-        x = _between(low[0] - self._grid.x0, high[0] - self._grid.x0, self.cell_mm, nx)
-        y = _between(low[1] - self._grid.y0, high[1] - self._grid.y0, self.cell_mm, ny)
-        if x.stop <= x.start or y.stop <= y.start:
+        low_x, low_y, low_z = tips.min(axis=0).tolist()
+        high_x, high_y, _ = tips.max(axis=0).tolist()
+        x0, y0, reach = self._grid.x0, self._grid.y0, self._reach
+        x = _between(low_x - reach - x0, high_x + reach - x0, self.cell_mm, nx)
+        y = _between(low_y - reach - y0, high_y + reach - y0, self.cell_mm, ny)
+        if low_z >= self._top or x.stop <= x.start or y.stop <= y.start:
             return np.zeros(0, np.int32), np.zeros(0, np.uint16)
         now = self._levels(y, x)
         rows, columns = np.nonzero(now != self._shown[y, x])
@@ -105,8 +116,10 @@ class _WatchedField:
         short = ((0, high * n - part.shape[0]), (0, wide * n - part.shape[1]))
         if short[0][1] or short[1][1]:
             part = np.pad(part, short, mode="edge")
-        heights = part if n == 1 else part.reshape(high, n, wide, n).mean(axis=(1, 3))
-        found: Levels = np.rint((heights - grid.bottom) / self.level).astype(np.uint16)
+        if n > 1:  # NumPy's own mean is slow for a few numbers each
+            lines = np.add.reduce([part[i::n] for i in range(n)])
+            part = np.add.reduce([lines[:, i::n] for i in range(n)]) / (n * n)
+        found: Levels = np.rint((part - grid.bottom) / self.level).astype(np.uint16)
         return found
 
 
@@ -149,8 +162,7 @@ class _WatchedSolid:
         self.level = 1.0 / _SHARES
         x, y, z = (solid.first + 0.5 * (several - 1) * solid.cell_mm).tolist()
         self.first_mm = (x, y, z)
-        self._wide_mm = max((tool.radius_mm for tool in tools.values()), default=0.0) + solid.cell_mm
-        self._long_mm = float(np.linalg.norm(np.subtract(solid.box.high, solid.box.low)))
+        self._wide_mm = max((tool.radius_mm for tool in tools.values()), default=0.0)
         self._before = solid.cells.copy()
         self._left = self._sums(solid.cells)
         self._all = Voxels.FULL * self._sums(np.ones_like(solid.cells))
@@ -158,7 +170,8 @@ class _WatchedSolid:
 
     def changes(self, course: Rows, first: int, last: int) -> tuple[Places, Levels]:
         """Return flat places and levels of cells that rows of a course have changed."""
-        part = self._reached(course, first, last)
+        axes = np.broadcast_to(course.axis, course.tip.shape)[first:last]
+        part = self._solid.reached(course.tip[first:last], axes, self._wide_mm)
         now, before = self._solid.cells[part], self._before[part]
         gone = np.argwhere(now != before)
         if not len(gone):
@@ -170,17 +183,6 @@ class _WatchedSolid:
         cells = np.unique(flat)
         np.subtract.at(self._left.ravel(), flat, taken)
         return cells.astype(np.int32), self._levels(cells)
-
-    def _reached(self, course: Rows, first: int, last: int) -> tuple[slice, slice, slice]:
-        """Return the points, along z, y and x, around the axis of a tool that is as long as the body."""
-        tips = course.tip[first:last]
-        axes = np.broadcast_to(course.axis, course.tip.shape)[first:last]
-        ends = np.concatenate((tips, tips + self._long_mm * axes)) - self._solid.first
-        low, high = ends.min(axis=0) - self._wide_mm, ends.max(axis=0) + self._wide_mm
-        x, y, z = (
-            _between(low[i], high[i], self._solid.cell_mm, self._solid.cells.shape[2 - i]) for i in range(3)
-        )
-        return z, y, x
 
     def _sums(self, cells: npt.NDArray[np.uint8]) -> npt.NDArray[np.int64]:
         n = self._several
@@ -197,5 +199,5 @@ class _WatchedSolid:
 
 def _between(low: float, high: float, cell_mm: float, count: int) -> slice:
     """Return which of some cells are between two places, counted from the middle of the first."""
-    first, last = np.clip([low // cell_mm, high // cell_mm + 1], 0, count).astype(int).tolist()
-    return slice(first, last)
+    first, last = (min(max(int(each // cell_mm), -1), count) for each in (low, high))
+    return slice(max(first, 0), min(last + 1, count))
