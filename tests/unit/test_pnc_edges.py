@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from pathlib import Path
 
 import pytest
 
 from polycnc.controllers.bosch._axes import SystemAxes
 from polycnc.nc.cpl import OMITTED, Fault
-from support.living_pnc import AXIS, Living
+from support.living_pnc import AXIS, LAGGING, MACHINE, Living, six
 from support.told import stopped, told
 
 NINE = ("X", "Y", "Z", "B", "U", "V", "W", "A", "C")
@@ -134,3 +135,149 @@ def test_axes_are_counted_from_1_to_the_last_of_their_channel(wide: Living) -> N
         assert stopped(wide, f"A={call}") == f"INVALID PARAMETER [{code}]", call
     for call in ("MPOS(1,0,2)", "WPOS(1,2)", "MPOS(1,-1)", "WPOS(1,1,0)", "WPOS(1,1,3)"):
         assert stopped(wide, f"A={call}") == "INVALID PARAMETER", call
+
+
+# ---------------------------------------------------------------------- services of the coupling
+
+
+@pytest.mark.covers(
+    *rows("MCODS", "MCODS.1", "MCODS.2", "MCODS.16", "MCODS.23", "MCODS.37", "MCODS.72", "MCODS.73", "MCODS.74"),
+    *rows("MCODS.75", "MCODS.76", "MCODS.77", "MCODS.71", "MCODS.15", "MCODS.52", "MCODS.52.elem.1", "MCODS.52.elem.2"),
+    *rows("MCODS.62", "MCODS.10", "MCODS.9", "MCODS.51", "MCODS.51.elem.1", "MCODS.51.elem.2", "cs.BCS", "cs.ACS"),
+)  # fmt: skip
+def test_an_external_shift_lies_among_those_of_the_tables(wide: Living) -> None:
+    """X stands at 1.23456, shifted by 3, 0.25 and from outside 40; a length from outside needs an H."""
+    wide.start(
+        '1 FXC("X",160,0)=40 : FXC("X",54,1)=3 : FXC("X",254,1)=0.25 : TC(1,745,0)=2.5 : TC(2,745,0)=-0.75\n'
+        "N1 G54\nN2 G254\nN3 G160\nN4 G745\nN5 G1 X1.23456 F60000\nN6 G4 F9\n",
+        400,
+    )
+    program, machine = 1.23456, 44.48456
+    wanted = {
+        1: machine, 2: 444846, 16: machine, 23: program, 37: program + 40, 72: program, 73: program, 74: machine,
+        75: program, 76: program, 77: machine, 71: program, 52: 40, 10: 0, 9: -1,
+    }  # fmt: skip
+    found = {number: wide.glance(number, 1)[0] for number in wanted}
+    kept = (
+        wide.glance(62, -1, 1, 1, 51),
+        wide.glance(15, 1, 27)[::9],
+        wide.glance(51, 1, 2),
+        wide.glance(52, 1, 8)[1:],
+    )
+    wide.pnc.reset(channel=1)
+    told(wide, "N1 G53\nN2 G153\nN3 G253\nN4 G167\nN5 G146\nN6 G1 X0 F60000")
+    assert found == pytest.approx(wanted, abs=1e-4)
+    assert kept == ([444846], [3, 0, 0.25], [-0.75, 2.5], [0.0] * 7)
+
+
+@pytest.mark.covers(
+    *rows("MCODS", "MCODS.18", "MCODS.18.val.0", "MCODS.18.val.1", "MCODS.24", "MCODS.29", "MCODS.29.val.1", "MCODS.30"),
+    *rows("MCODS.53", "MCODS.53.val.0", "MCODS.53.val.1", "MCODS.81", "MCODS.81.val.0", "MCODS.81.val.1", "MCODS.7"),
+    *rows("MCODS.50", "MCODS.87", "MCODS.87.bit.0", "MCODS.39", "MCODS.31", "MCODS.48", "MCODS.68", "MCODS.68.elem.1"),
+    *rows("MCODS.68.elem.2", "MCODS.69", "MCODS.69.elem.1", "MCODS.69.elem.2", "MCODS.28", "MCODS.32", "MCODS.32.sav.3"),
+    *rows("MCODS.47", "MCODS.47.val.1", "MCODS.47.val.0", "MCODS.6", "MCODS.79", "MCODS.83", "MCODS.32.elem.1"),
+    *rows("MCODS.46", "MCODS.46.elem.1", "MCODS.46.elem.2", "MCODS.87.bit.3", "MCODS.39.val.0", "MCODS.29.val.0"),
+)  # fmt: skip
+def test_what_another_channel_does_is_told_of_it_alone(wide: Living) -> None:
+    control = wide.pnc.control
+    assert wide.glance(29, -1) == [0]
+    control.set_switches(optional_stop=True, block_delete=frozenset({1}), channel=1)
+    wide.start("N1 G70 (MSG,SECOND)\nN2 G1 X2=-9 F10\n", 300, channel=2)
+    control.set_overrides(feed=1.5, channel=1)
+    wide.pnc.advance(5)
+    wanted: dict[int, tuple[object, object]] = {
+        18: ([1], [0]), 24: (None, [254.0]), 28: (None, "SECOND"), 30: (None, "main2"), 31: ([5], [5]),
+        81: ([1, 1, 1, 2], [0, 3]), 7: ([10000.0], [15000.0]), 68: ([0, 0], [1, 1]), 69: ([0, 0], [1, 1]),
+        39: ([0], [0]), 47: ([0, 0], [1]), 79: ([1, 1], [0]), 32: (None, [3, 1]), 46: ([1, 1], [1, 1]),
+        50: ([10000.0] * 9, [15000.0]),
+    }  # fmt: skip
+    for number, both in wanted.items():
+        for channel, expected in enumerate(both, 1):
+            if expected is not None:
+                size = 40 if isinstance(expected, str) else len(expected)  # type: ignore[arg-type]
+                assert wide.glance(number, channel, size) == expected, (number, channel)
+    assert [wide.glance(29, -1), wide.glance(53, -1, 11), wide.glance(6, -1, 10)] == [
+        [0], [1, 1, 1, 2, 1, 1, 1, 1, 1, 0, 3], [1] * 9 + [0],
+    ]  # fmt: skip
+    assert wide.glance(50, -1, 10) == [10000.0] * 9 + [15000.0]
+    control.set_overrides(feed=0.0, channel=1)
+    wide.pnc.advance(1)
+    assert (wide.glance(87, 2), wide.glance(87, 1)) == ([8], [0])
+    control.set_overrides(feed=1.0, channel=1)
+    wide.pnc.reset(channel=2)
+    wide.pnc.advance(50)
+    control.set_switches(machine_lock=True, optional_stop=False, block_delete=frozenset(), channel=1)
+    assert wide.glance(29, -1) == [1]
+    control.set_switches(machine_lock=False, channel=1)
+    assert [wide.glance(29, -1), wide.glance(68, 2, 2), wide.glance(69, 2, 2)] == [[0], [0, 0], [0, 0]]
+
+
+@pytest.mark.covers(
+    *rows("MCODS", "MCODS.36", "MCODS.5", "MCODS.25", "MCODS.8", "SD.5.3.3", "SD.5.3.1", "SD.205.3.s")
+)
+def test_a_spindle_whose_override_is_0_stands_and_is_told_to_turn(wide: Living) -> None:
+    wide.start("N1 S900 M3\nN2 G4 F9\n", 300)
+    wide.pnc.control.set_overrides(spindle=0.0)
+    wide.pnc.advance(300)
+    found = [wide.glance(number, -1)[0] for number in (25, 5, 36, 8, 63)]
+    sd = wide.pnc.system.functions(1)["SD"]
+    speeds = sd(5, 3, 1), sd(5, 3, 3), sd(205, 3, 1), sd(5, 3, 2), sd(12, 1)
+    wide.pnc.control.set_overrides(spindle=1.0)
+    wide.pnc.reset(channel=1)
+    assert found == [900, 0, 0, 0, 1]
+    assert speeds == (0, 0, 0, 900, 3)
+
+
+@pytest.mark.covers(
+    *rows("MCODS", "MCODS.42", "ncs.18", "ncs.102", "ncs.1", "ncs.24", "MCODS.55", "MCODS.56", "MCODS.57")
+)
+def test_selections_of_services_go_to_their_last(wide: Living) -> None:
+    answers = [wide.read(42, 1, 1, each) for each in (-1, 0, 65535, 65536)]
+    assert answers == [18, 102, 102, 18]
+    for number in (55, 56, 57):
+        assert [wide.read(number, -1, 40, axis) for axis in (11, -1)] == [24, 24]
+        assert wide.read(number, -1, 40, 0) == wide.read(number, -1, 40, 1)
+        assert wide.read(number, -1, 40) == 18
+    assert wide.read(57, -1, 40, 4) == "simulated rotary"
+    for number in (7, 9, 28, 32, 52, 87):  # of a channel
+        assert [wide.read(number, channel) for channel in (-2, -1, 0, 3)] == [1] * 4
+    for number in (1, 4, 29, 35, 63):  # of the system: no channel is asked for, and none that is not there
+        assert [wide.read(number, channel) for channel in (-2, 3)] == [1] * 2
+        assert [isinstance(wide.read(number, channel), list) for channel in (-1, 0, 2)] == [True] * 3
+    for number in (47, 48, 50, 53, 73):  # of either
+        assert [wide.read(number, channel) for channel in (-2, 0, 3)] == [1] * 3
+
+
+@pytest.mark.covers(
+    *rows("MCODS", "MCODS.73", "MCODS.74", "MCODS.43", "MCODS.43.val.-1", "MCODS.58", "axis.sync", "SD.25.m")
+)
+def test_an_axis_in_no_channel_is_told_where_it_stands(tmp_path: Path) -> None:
+    living = Living(tmp_path, MACHINE, [("X", "Z", "C"), ("X2", "U")])
+    living.start("N1 G1 U7.5 F60000\n", 400, channel=2)
+    living.pnc.transfer_axis("U", None)
+    living.pnc.advance(5)
+    told_of = [living.read(number, -1, 5) for number in (73, 74, 43, 58)]
+    channel = told(living, "N1 G4 F0.01", "SD(25,5)", "SD(22,5)", "SD(21,2)", "SPOS(5)", 'APOS("U")')
+    living.pnc.close()
+    assert told_of == [[0, 0, 0, 0, 7.5], [0, 0, 0, 0, 7.5], [1, 1, 1, 2, -1], [1, 1, 1, 2, 2]]
+    assert channel == [-1, 0, 1, 7.5, 7.5]
+
+
+@pytest.mark.covers(
+    *rows("MCODS.6", "MCODS.6.val.0", "MCODS.6.val.1", "MCODS.79", "MCODS.4", "MCODS.3", "MCODS.3.elem.1")
+)
+def test_an_axis_that_stands_beside_its_window_is_not_in_position(tmp_path: Path) -> None:
+    living = six(tmp_path, LAGGING, servo=True)
+    living.start("N1 G0 X20\nN2 G4 F3\n", 20)
+    living.pnc.control.set_overrides(feed=0.5, channel=0)
+    living.pnc.advance(5)
+    feeds = living.glance(3, 1, 3)
+    x = "X"
+    living.pnc.advance(2000, until=lambda: living.pnc.axes[x].setpoint == 20)
+    living.pnc.advance(2)
+    apart = living.pnc.axes[x].setpoint - living.pnc.axes[x].actual
+    found = living.glance(6, -1), living.glance(79, 1), living.glance(4, -1), living.glance(47, 1)
+    living.pnc.close()
+    assert apart > 0.01
+    assert found[:3] == ([0], [0], [pytest.approx(apart, abs=1e-5)])
+    assert feeds[0] == feeds[2] == 30000 > feeds[1] > 0
