@@ -13,7 +13,7 @@ from support.living_pnc import AXIS, LAGGING, MACHINE, Living, six
 from support.told import stopped, told
 
 NINE = ("X", "Y", "Z", "B", "U", "V", "W", "A", "C")
-FAST = '[[axis]]\nname = "B"\nkind = "rotary"\nvmax_deg_s = 900\namax_deg_s2 = 9000\n'
+FAST = '[[axis]]\nname = "B"\nkind = "rotary"\nmodulo = true\nvmax_deg_s = 900\namax_deg_s2 = 9000\n'
 WIDE = (
     'name = "wide"\n' + "".join(FAST if each == "B" else AXIS.format(each, 500) for each in NINE)
     + AXIS.format("X2", 300) + "[spindle]\nmax_rpm = 4000\n"
@@ -171,12 +171,12 @@ def test_an_external_shift_lies_among_those_of_the_tables(wide: Living) -> None:
 
 
 @pytest.mark.covers(
-    *rows("MCODS", "MCODS.18", "MCODS.18.val.0", "MCODS.18.val.1", "MCODS.24", "MCODS.29", "MCODS.29.val.1", "MCODS.30"),
+    *rows("MCODS", "MCODS.18", "MCODS.18.val.0", "MCODS.18.val.1", "MCODS.24", "MCODS.29", "MCODS.29.val.1"),
     *rows("MCODS.53", "MCODS.53.val.0", "MCODS.53.val.1", "MCODS.81", "MCODS.81.val.0", "MCODS.81.val.1", "MCODS.7"),
     *rows("MCODS.50", "MCODS.87", "MCODS.87.bit.0", "MCODS.39", "MCODS.31", "MCODS.48", "MCODS.68", "MCODS.68.elem.1"),
-    *rows("MCODS.68.elem.2", "MCODS.69", "MCODS.69.elem.1", "MCODS.69.elem.2", "MCODS.28", "MCODS.32", "MCODS.32.sav.3"),
+    *rows("MCODS.68.elem.2", "MCODS.69", "MCODS.69.elem.1", "MCODS.69.elem.2", "MCODS.28", "MCODS.32", "MCODS.30"),
     *rows("MCODS.47", "MCODS.47.val.1", "MCODS.47.val.0", "MCODS.6", "MCODS.79", "MCODS.83", "MCODS.32.elem.1"),
-    *rows("MCODS.46", "MCODS.46.elem.1", "MCODS.46.elem.2", "MCODS.87.bit.3", "MCODS.39.val.0", "MCODS.29.val.0"),
+    *rows("MCODS.32.sav.3", "MCODS.46", "MCODS.46.elem.1", "MCODS.46.elem.2", "MCODS.87.bit.3", "MCODS.29.val.0"),
 )  # fmt: skip
 def test_what_another_channel_does_is_told_of_it_alone(wide: Living) -> None:
     control = wide.pnc.control
@@ -281,3 +281,114 @@ def test_an_axis_that_stands_beside_its_window_is_not_in_position(tmp_path: Path
     assert apart > 0.01
     assert found[:3] == ([0], [0], [pytest.approx(apart, abs=1e-5)])
     assert feeds[0] == feeds[2] == 30000 > feeds[1] > 0
+
+
+# ---------------------------------------------------------------------- tables
+
+
+@pytest.mark.covers(
+    *rows("FXC", "FXCR", "FXDEL", "FXINS", "FXC.table.file", "FXC.table.0", "FXC.unit.0", "FXC.unit.2")
+)
+@pytest.mark.covers(*rows("FXC.G.160", "FXC.G.54", "FXC.G.59", "FXC.G.154", "FXC.G.254", "FXCR.channel.0"))
+@pytest.mark.covers(*rows("FXINS.type.0", "FXINS.type.1", "FXCR.class.0", "FXCR.class.1", "err.FXC_FOREIGN"))
+def test_tables_of_shifts_have_64_columns_and_external_ones_8(wide: Living) -> None:
+    (wide.folder / "INCH.npv").write_text("ZERO SHIFT TABLE INCH\nAXES X B:ROTARY\nG54 2.0 7.0\n\x03\n")
+    more = " : ".join(f'FXINS("W.npv",{at},"Q{at}")' for at in range(10, 64))
+    found = told(
+        wide,
+        f'1 FXCR(0,"W.npv")\n2 {more}\n3 FXC(64,54,"W.npv")=5.5 : FXC(-64,54,"W.npv")=0.25 : FXC(63,59,"W.npv",2)=1\n'
+        '4 FXC(8,160,0)=3 : FXC(-8,160,0)=0.5 : FXC("C",160,0)=2\n'
+        '5 FXCR("INCH.npv","LIKE.npv",1) : FXC(-1,54,"W.npv")=-4',
+        *(
+            'FXC(64,54,"W.npv")',
+            'FXC("X2",54,"W.npv")',
+            'FXC(63,59,"W.npv")',
+            'FXC("A",160,0)',
+            'FXC("C",160,0)',
+        ),
+        *('FXC(1,54,"LIKE.npv")', 'FXC(2,54,"LIKE.npv")', 'FXC(1,54,"INCH.npv")', 'FXC(1,54,"INCH.npv",0)'),
+        *('FXC(2,54,"INCH.npv",0)', 'FXC(1,54,"W.npv")', "FXC(1,160)"),
+    )
+    told(wide, '1 FXC(8,160,0)=0 : FXC("C",160,0)=0', "1")
+    assert found == pytest.approx([5.75, 5.75, 25.4, 3.5, 2, 0, 0, 2, 50.8, 7, -4, 40])
+    head = (wide.folder / "LIKE.npv").read_text().splitlines()[:2]
+    assert head == ["ZERO SHIFT TABLE MM STRICT", "AXES X B:ROTARY"]
+    kept = (wide.folder / "W.npv").read_text()
+    for statement in (
+        'FXINS("W.npv",64,"ONE")', 'FXINS("W.npv",65,"ONE")', 'FXINS("W.npv",0,"ONE")', 'FXINS("W.npv",1,"X2")',
+        'FXINS("W.npv",1,"ONE",2)', 'A=FXC(65,54,"W.npv")', 'A=FXC(0,54,"W.npv")', 'FXC(-65,54,"W.npv")=1',
+        'FXDEL("W.npv",65)', 'FXDEL("W.npv",0)', 'FXDEL("W.npv",-1)', 'FXDEL("W.npv","-X")', "A=FXC(9,160,0)",
+        "FXC(9,260,0)=1", 'FXC("X2",160,0)=1', 'A=FXC(1,54,"W.npv",1)', "A=FXC(1,160,0,0)", "A=FXC(1,53,1)",
+        "A=FXC(1,60,1)", "A=FXC(1,153,1)", "A=FXC(1,260,3)", "A=FXC(1,54,0)", "A=FXC(1,54,4)", 'FXCR(3,"N.npv")',
+        'FXCR(-1,"N.npv")', 'FXCR(1,"N.npv",2)',
+    ):  # fmt: skip
+        assert stopped(wide, statement) == "INVALID PARAMETER", statement
+    assert (wide.folder / "W.npv").read_text() == kept
+    assert not (wide.folder / "N.npv").exists()
+
+
+@pytest.mark.covers(
+    *rows("TC", "TC.sel.1", "TC.sel.2", "TC.sel.3", "TC.sel.5", "TC.sel.8", "TC.table.0", "TC.table.4")
+)
+@pytest.mark.covers(
+    *rows("TC.table.5", "TC.group.1-48", "TC.group.845", "TC.group.847", "TC.group.145", "TC.group.147")
+)
+def test_groups_of_compensations_are_1_to_48_and_those_of_g145_to_g847(wide: Living) -> None:
+    found = told(
+        wide,
+        "1 TC(1,48,4)=8.5 : TC(-2,48,4)=-1.5 : TC(1,1,5,2)=1 : TC(1,845,0)=3 : TC(-8,847,0)=4 : TC(-8,847,0)=0.5\n"
+        "2 TC(5,847,0)=45 : TC(1,147,0)=6",
+        *(
+            "TC(1,48,4)",
+            "TC(2,48)",
+            "TC(1,1,5)",
+            "TC(1,1,5,2)",
+            "TC(-1,845,0)",
+            "TC(8,847,0)",
+            "TC(5,847,0)",
+            "TC(1,147)",
+        ),
+    )
+    told(wide, "1 TC(1,845,0)=0", "1")
+    assert found == pytest.approx([8.5, -1.5, 25.4, 1, 3, 4.5, 45, 6])
+    for statement in (
+        "TC(1,49,4)=1", "A=TC(1,49,4)", "TC(1,0,4)=1", "TC(3,1,4)=1", "TC(0,1,4)=1", "TC(-3,1,4)=1", "TC(3,845,0)=1",
+        "TC(1,945,0)=1", "TC(1,947,0)=1", "TC(1,45,0)=1", "TC(1,47,0)=1", "TC(9,847,0)=1", "TC(1,17,3)=1",
+        "TC(1,17,6)=1", "TC(1,845,4)=1", "TC(1,147,5)=1", "TC(1,845,0,0)=1", "TC(1,17,4,1)=1", "A=TC(9)", "A=TC(0)",
+        "A=TC(6,845,0)", "A=TC(6,17,4)",
+    ):  # fmt: skip
+        assert stopped(wide, statement) == "INVALID PARAMETER", statement
+
+
+@pytest.mark.covers(
+    *rows("TDA", *(f"TDA.field.{n}" for n in (1, 2, 3, 8, 48, 49)), "GETERR", "err.SCS_LIST", "SCSL")
+)
+@pytest.mark.covers(
+    *rows("GETERR.ret.-1", "SCSL.result.0", "param.1001_00004", "MCA", "SCL", "NCF", "IC", "IC.group.0")
+)
+def test_tool_data_errors_drives_and_signals_at_their_edges(wide: Living) -> None:
+    found = told(
+        wide,
+        "1 DIM A$(40) : DIM F%(2,4)\n2 TDA(1,1,3)=-2147483648 : TDA(1,1,48)=2147483647 : A$=TDA(1,2,49)\n"
+        '3 E%=GETERR(-1,0,F%,1) : SCSL(1,"S",51,"ONE",G%)\n4 IC(80)=TRUE : IC(95)=TRUE',
+        *(
+            "TDA(1,1,3)",
+            "TDA(1,1,48)",
+            "LEN(A$)",
+            "TDA(1,1,4,1)",
+            "E%",
+            "G%",
+            "MCA(100300004,3)",
+            "MCA(100300004,0)",
+        ),
+        *("?IC(80,3)", "?IC(95,3)", "?IC(81,3)", "?IC(94,3)", 'LEN(NCF("M8"))'),
+    )
+    assert found == [-(2**31), 2**31 - 1, 0, 0, 0, 0, 3, 1, 1, 1, 0, 0, 0]
+    assert (wide.folder / "ONE").read_bytes() == b"0\n\x03\n"
+    for statement in (
+        "A%=TDA(1,1,3,0)", "A%=TDA(1,1,3,2)", "A%=TDA(1,1,50)", "A%=TDA(1,1,0)", "A%=TDA(1,0,3)", "A%=TDA(0,1,3)",
+        "A=SCL(0,,1)", "IC(79)=TRUE", "IC(96)=TRUE", "IC(80,3)=TRUE",
+    ):  # fmt: skip
+        assert stopped(wide, statement) == "INVALID PARAMETER", statement
+    assert stopped(wide, "TDA(1,1,3)=1.5").startswith("inconsistent data")
+    assert stopped(wide, "A%=GETERR(1,0,F%,1)", "10 DIM F%(2,2)") == "INVALID PARAMETER"
