@@ -391,6 +391,12 @@ def test_line_types_draw_erase_and_toggle(tmp_path: Path) -> None:
         y: "".join("#" if shown.colour(x, y) == 1 else "." for x in range(10, 91)) for y in range(10, 61, 10)
     }
     assert rows[10] == "#" * 20 + "." * 31 + "#" * 30
+    assert [shown.colour(x, 10) for x in (29, 30, 60, 61)] == [
+        1,
+        -1,
+        -1,
+        1,
+    ]  # nothing is drawn there, not black
     assert rows[20] == "." * 81
     assert rows[30] == "." * 41 + "#" * 40
     assert rows[40] == ("########..#.." * 7)[:81]

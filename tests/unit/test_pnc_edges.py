@@ -8,9 +8,9 @@ from pathlib import Path
 import pytest
 
 from polycnc.controllers.bosch._axes import SystemAxes
-from polycnc.nc.cpl import OMITTED, Fault
+from polycnc.nc.cpl import BLOCKED, OMITTED, Fault
 from support.living_pnc import AXIS, LAGGING, MACHINE, Living, six
-from support.told import stopped, told
+from support.told import carried_out, stopped, told
 
 NINE = ("X", "Y", "Z", "B", "U", "V", "W", "A", "C")
 FAST = '[[axis]]\nname = "B"\nkind = "rotary"\nmodulo = true\nvmax_deg_s = 900\namax_deg_s2 = 9000\n'
@@ -110,7 +110,9 @@ def test_a_name_is_one_of_the_channel_before_it_is_a_physical_one() -> None:
 
 
 @pytest.mark.covers(
-    *rows("err.1938", "err.1970", "err.1971", "axistype.0", "axistype.1", "WPOS", "MPOS", "CPOS", "AXO")
+    *rows(
+        "AXP", "err.1938", "err.1970", "err.1971", "axistype.0", "axistype.1", "WPOS", "MPOS", "CPOS", "AXO"
+    )
 )
 @pytest.mark.covers(*rows("axis.physical", "axis.logical", "cs.MCS", "cs.WCS"))
 def test_axes_are_counted_from_1_to_the_last_of_their_channel(wide: Living) -> None:
@@ -133,8 +135,34 @@ def test_axes_are_counted_from_1_to_the_last_of_their_channel(wide: Living) -> N
         'WPOS("X2",1,1)': 1971, 'MPOS("X",1,2)': 1971, "MPOS(2,1,2)": 1938,
     }.items():  # fmt: skip
         assert stopped(wide, f"A={call}") == f"INVALID PARAMETER [{code}]", call
+    for word in (
+        "AXP(10,1,0)",
+        "AXP(1.5,1)",
+        "AXP(0,1)",
+        "AXP(10,1)",
+        "AXP(11,1,0)",
+        "AXP(1,1,2)",
+        "AXP(1,1,-1)",
+    ):
+        assert "INVALID PARAMETER" in carried_out(wide, f"10 A=1\nN30 G1 [{word}] F600\n", 1), word
     for call in ("MPOS(1,0,2)", "WPOS(1,2)", "MPOS(1,-1)", "WPOS(1,1,0)", "WPOS(1,1,3)"):
         assert stopped(wide, f"A={call}") == "INVALID PARAMETER", call
+
+
+@pytest.mark.covers(
+    *rows("AXO", "CPOS", "WPOS", "MPOS", "SPOS", "APOS", "units.pos", "nc.G92", "nc.G70_G71", "cs.PCS")
+)
+def test_positions_are_inches_where_the_channel_has_inches(wide: Living) -> None:
+    told(wide, "N1 G1 X2=12.7 F60000\n2 WAIT", "1", channel=2)
+    asked = {
+        "AXO(1)": 1, "CPOS(1)": 1, "WPOS(1)": 2, "MPOS(1)": 2, "SPOS(1)": 2, "APOS(1)": 2, 'AXO("B")': -10,
+        "CPOS(4)": 40, "MPOS(4)": 30, 'SPOS("B")': 30, "APOS(4)": 30, "MPOS(10,0)": 0.5, "APOS(10)": 0.5,
+        "SPOS(10)": 0.5, "WPOS(1,1,2)": 0.5,
+    }  # fmt: skip
+    found = told(wide, "N1 G1 X50.8 B30 F60000\nN2 G92 X25.4 B40\nN3 G70\n4 WAIT", *asked)
+    told(wide, "N1 G1 X2=0 F60000\n2 WAIT", "1", channel=2)
+    told(wide, "N1 G1 X0 B0 F60000\n2 WAIT", "1")
+    assert dict(zip(asked, found, strict=True)) == pytest.approx(asked)
 
 
 # ---------------------------------------------------------------------- services of the coupling
@@ -249,7 +277,19 @@ def test_selections_of_services_go_to_their_last(wide: Living) -> None:
 
 
 @pytest.mark.covers(
-    *rows("MCODS", "MCODS.73", "MCODS.74", "MCODS.43", "MCODS.43.val.-1", "MCODS.58", "axis.sync", "SD.25.m")
+    *rows(
+        "units.pos",
+        "SPOS",
+        "APOS",
+        "MCODS",
+        "MCODS.73",
+        "MCODS.74",
+        "MCODS.43",
+        "MCODS.43.val.-1",
+        "MCODS.58",
+        "axis.sync",
+        "SD.25.m",
+    )
 )
 def test_an_axis_in_no_channel_is_told_where_it_stands(tmp_path: Path) -> None:
     living = Living(tmp_path, MACHINE, [("X", "Z", "C"), ("X2", "U")])
@@ -257,7 +297,7 @@ def test_an_axis_in_no_channel_is_told_where_it_stands(tmp_path: Path) -> None:
     living.pnc.transfer_axis("U", None)
     living.pnc.advance(5)
     told_of = [living.read(number, -1, 5) for number in (73, 74, 43, 58)]
-    channel = told(living, "N1 G4 F0.01", "SD(25,5)", "SD(22,5)", "SD(21,2)", "SPOS(5)", 'APOS("U")')
+    channel = told(living, "N1 G70\n2 WAIT", "SD(25,5)", "SD(22,5)", "SD(21,2)", "SPOS(5)", 'APOS("U")')
     living.pnc.close()
     assert told_of == [[0, 0, 0, 0, 7.5], [0, 0, 0, 0, 7.5], [1, 1, 1, 2, -1], [1, 1, 1, 2, 2]]
     assert channel == [-1, 0, 1, 7.5, 7.5]
@@ -281,6 +321,23 @@ def test_an_axis_that_stands_beside_its_window_is_not_in_position(tmp_path: Path
     assert apart > 0.01
     assert found[:3] == ([0], [0], [pytest.approx(apart, abs=1e-5)])
     assert feeds[0] == feeds[2] == 30000 > feeds[1] > 0
+
+
+@pytest.mark.covers(
+    *rows("MCODS", "MCODS.refresh", "MCODS.refresh.S", "MCODS.refresh.R", "MCODS.16", "MCODS.23", "MCODS.44")
+)
+def test_data_of_all_channels_are_new_with_a_block_of_any(wide: Living) -> None:
+    wide.start("N1 G4 F0.1\nN2 G1 X2=3 F60000\nN3 G4 F9\n", 20, channel=2)
+    wide.read(16, -1, 10)
+    before = wide.ask(16, -1, 10)
+    wide.pnc.advance(200)
+    after = wide.ask(16, -1, 10)[9], wide.ask(16, -1, 10)
+    wide.read(44, -1, 3)
+    wide.pnc.advance(1000)
+    never = wide.ask(44, -1, 3)
+    wide.pnc.reset(channel=2)
+    told(wide, "N1 G1 X2=0 F60000\n2 WAIT", "1", channel=2)
+    assert (before, after, never) == (BLOCKED, (3, BLOCKED), BLOCKED)
 
 
 # ---------------------------------------------------------------------- tables
@@ -361,7 +418,14 @@ def test_groups_of_compensations_are_1_to_48_and_those_of_g145_to_g847(wide: Liv
 
 
 @pytest.mark.covers(
-    *rows("TDA", *(f"TDA.field.{n}" for n in (1, 2, 3, 8, 48, 49)), "GETERR", "err.SCS_LIST", "SCSL")
+    *rows(
+        "TDA",
+        "err.ERASE_WARNING",
+        *(f"TDA.field.{n}" for n in range(1, 50)),
+        "GETERR",
+        "err.SCS_LIST",
+        "SCSL",
+    )
 )
 @pytest.mark.covers(
     *rows("GETERR.ret.-1", "SCSL.result.0", "param.1001_00004", "MCA", "SCL", "NCF", "IC", "IC.group.0")
@@ -391,4 +455,12 @@ def test_tool_data_errors_drives_and_signals_at_their_edges(wide: Living) -> Non
     ):  # fmt: skip
         assert stopped(wide, statement) == "INVALID PARAMETER", statement
     assert stopped(wide, "TDA(1,1,3)=1.5").startswith("inconsistent data")
+    fields = [*range(3, 8), *range(9, 49)]
+    lines = "\n".join(f"{field} TDA(2,2,{field})={2_000_000_000 + field}" for field in fields)
+    values = told(wide, lines, *(f"TDA(2,2,{field})" for field in fields))
+    assert values == [2_000_000_000 + field for field in fields]
+    warned = told(
+        wide, '1 DIM F%(1,3) : A%=ERASE("NONE") : E%=GETERR(2,7,F%)', "E%", "F%(1,2)", "A%", channel=2
+    )
+    assert warned == [1, 2, 1]
     assert stopped(wide, "A%=GETERR(1,0,F%,1)", "10 DIM F%(2,2)") == "INVALID PARAMETER"

@@ -257,6 +257,7 @@ def test_a_buffer_that_is_full_takes_nothing(two: Two) -> None:
     block = f'MCOPS(4,2,"{"    " * 46}G1 F6000 X2=1",,,4128)'  # with its line feed 198 bytes
     size = 4 * 46 + 14
     fitting = 4096 // size
+    assert two.ask(f'MCOPS(4,2,"{" " * 4096}",,,4128)', f'MCOPS(4,2,"{" " * 9000}",,,4128)') == [26, 26]
     assert two.ask(*[block] * fitting, block, 'MCOPS(4,2,"X2=2",,,4128)') == [*fitting * [0], 26, 0]
     pnc.cycle_start(channel=2)
     pnc.advance(3000)
@@ -419,13 +420,19 @@ def test_names_have_100_characters_and_blocks_511(two: Two) -> None:
     assert two.ask(*(f'MCOPS(4,2,"{block}",,,32)' for block in blocks)) == [18, 0]
 
 
-@pytest.mark.covers("cpl.MCOPS.1", "cpl.ncs.102")
+@pytest.mark.covers("cpl.MCOPS.1", "cpl.ncs.102", "cpl.ncs.8", "cpl.ncs.10", "cpl.ncs.3", "cpl.ncs.18")
 @pytest.mark.covers("cpl.MCOPS")
 def test_what_is_not_simulated_is_refused(two: Two) -> None:
     two.pnc.select_program("LONG", channel=2)
     two.pnc.cycle_start(channel=2)
     assert two.ask("MCOPS(1,2)", "MCOPS(10,2)") == [102, 102]
     assert two.pnc.run_state(2) is RunState.ACTIVE
+    assert two.ask("MCOPS(5,2)", "MCOPS(1,2)") == [0, 3]
+    two.pnc.advance(500)
+    assert two.ask("MCOPS(1,2)", "MCOPS(1,3)", "MCOPS(1,-2)", "MCOPS(1,2,0)") == [10, 1, 1, 18]
+    two.pnc.select_program("LONG", channel=2)
+    two.pnc.control.select_mode(two.pnc.control.mode.__class__.JOG, channel=1)
+    assert two.ask("MCOPS(1,2)") == [8]
 
 
 # ---------------------------------------------------------------------- what is waited for
