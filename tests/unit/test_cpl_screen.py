@@ -123,11 +123,11 @@ def test_dialog_commands_refuse(tmp_path: Path, program: str, what: str) -> None
 def test_dialog_commands_take_the_last_that_is_allowed(tmp_path: Path) -> None:
     """What lies at the borders of the window, and the last of fonts, sizes, cuts, colours, patterns and copy types."""
     (tmp_path / "cplbmp").mkdir()
-    (tmp_path / f"cplbmp/{'m' * 66}.bmp").write_bytes(_bmp([[RED]]))
+    (tmp_path / f"cplbmp/{'m' * 70}.bmp").write_bytes(_bmp([[RED]]))
     shown = Shown(
         f'1 DSP(46,79,"AB") : DSP(1,1,"{"T" * 77}") : GPR(0,0,"LOW") : GPR(632,414,"HIGH") : COL(7,6,1)\n'
         f'2 DSP(2,79,"C") : RGB(7,255,255,255) : RGB(0,0,0,1) : LIN(10,374,40,374) : GWD(0,632,0,374)\n'
-        f'3 BMP(632,374,"{"m" * 66}",8) : MWD(0,632,0,374) : CIR(100,100,9) : LIN(40,370) : GMD(4) : LIN(0,1,632,1)\n'
+        f'3 BMP(632,374,"{"m" * 70}",8) : MWD(0,632,0,374) : CIR(100,100,9) : LIN(40,370) : GMD(4) : LIN(0,1,632,1)\n'
         '4 GMD(0) : FIL(300,300,5,3,7) : TFO(10,500500,3,360) : GPR(5,6,"BIG") : TFO(5,9,0,90) : GPR(7,8,"FLAT")\n'
         "5 #K%=INKEY : CLG : #L%=INKEY : DLF : #M%=INKEY",
         tmp_path, "x", "y", finish=False,

@@ -558,6 +558,7 @@ def test_words_without_a_function_are_reserved_all_the_same(word: str) -> None:
 def test_points_and_commas_are_text_within_strings() -> None:
     assert value('#A$="1,5.7:#@%?!;=" : #B$="(["', "#A$") == "1,5.7:#@%?!;="
     assert value("#A=.5+5.") == 5.5
+    assert value("GOTO .THERE:#A=1\n.THERE:#A=2") == 2.0
     assert failure("#A=1,5").what == "the instruction does not go on with ','"
     assert failure("#A=1 & 2").what == "'&' has no meaning here"
 

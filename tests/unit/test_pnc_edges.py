@@ -8,8 +8,9 @@ from pathlib import Path
 import pytest
 
 from polycnc.controllers.bosch._axes import SystemAxes
+from polycnc.controllers.bosch.ncs import Mode
 from polycnc.nc.cpl import BLOCKED, OMITTED, Fault
-from support.living_pnc import AXIS, LAGGING, MACHINE, Living, six
+from support.living_pnc import AXIS, LAGGING, MACHINE, Living, padded, six
 from support.told import carried_out, stopped, told
 
 NINE = ("X", "Y", "Z", "B", "U", "V", "W", "A", "C")
@@ -205,6 +206,7 @@ def test_an_external_shift_lies_among_those_of_the_tables(wide: Living) -> None:
     *rows("MCODS.68.elem.2", "MCODS.69", "MCODS.69.elem.1", "MCODS.69.elem.2", "MCODS.28", "MCODS.32", "MCODS.30"),
     *rows("MCODS.47", "MCODS.47.val.1", "MCODS.47.val.0", "MCODS.6", "MCODS.79", "MCODS.83", "MCODS.32.elem.1"),
     *rows("MCODS.32.sav.3", "MCODS.46", "MCODS.46.elem.1", "MCODS.46.elem.2", "MCODS.87.bit.3", "MCODS.29.val.0"),
+    *rows("MCODS.87.bit.4", "MCODS.32.sav.2", "MCODS.32.ipo.3"),
 )  # fmt: skip
 def test_what_another_channel_does_is_told_of_it_alone(wide: Living) -> None:
     control = wide.pnc.control
@@ -232,6 +234,10 @@ def test_what_another_channel_does_is_told_of_it_alone(wide: Living) -> None:
     wide.pnc.advance(1)
     assert (wide.glance(87, 2), wide.glance(87, 1)) == ([8], [0])
     control.set_overrides(feed=1.0, channel=1)
+    wide.pnc.reset(channel=2)
+    wide.pnc.advance(50)
+    wide.start("N1 G1 X2=0 F60000\nN2 M1\n", 300, channel=2)
+    assert (wide.glance(87, 2), wide.glance(32, 2, 2), wide.glance(87, 1)) == ([16], [2, 3], [0])
     wide.pnc.reset(channel=2)
     wide.pnc.advance(50)
     control.set_switches(machine_lock=True, optional_stop=False, block_delete=frozenset(), channel=1)
@@ -321,6 +327,23 @@ def test_an_axis_that_stands_beside_its_window_is_not_in_position(tmp_path: Path
     assert apart > 0.01
     assert found[:3] == ([0], [0], [pytest.approx(apart, abs=1e-5)])
     assert feeds[0] == feeds[2] == 30000 > feeds[1] > 0
+
+
+@pytest.mark.covers(
+    *rows("MCODS", *(f"MCODS.{n}" for n in (71, 72, 75, 76, 77, 78, 81, 82, 83)), "MCODS.81.val.2")
+)
+def test_a_channel_that_has_run_nothing_tells_where_it_stands(tmp_path: Path) -> None:
+    living = Living(tmp_path, MACHINE, [("X", "Z", "C"), ("X2", "U")])
+    first = living.glance(81, 1, 4), living.glance(78, 1, 60), living.glance(82, 1, 3)
+    living.pnc.select_mode(Mode.JOG, channel=1)
+    living.pnc.control.jog("X", 1)
+    living.pnc.advance(100)
+    x = living.pnc.axes["X"].setpoint
+    shown = [living.glance(number, 1, 3) for number in (71, 72, 75, 76, 77, 83)]
+    living.pnc.close()
+    assert first == ([1, 1, 2, 3], padded("X", "Z", "C"), [3, 3, 3])
+    assert x > 1
+    assert shown == [pytest.approx([x, 0, 0])] * 5 + [[0, 0, 0]]
 
 
 @pytest.mark.covers(
@@ -428,7 +451,21 @@ def test_groups_of_compensations_are_1_to_48_and_those_of_g145_to_g847(wide: Liv
     )
 )
 @pytest.mark.covers(
-    *rows("GETERR.ret.-1", "SCSL.result.0", "param.1001_00004", "MCA", "SCL", "NCF", "IC", "IC.group.0")
+    *rows(
+        "GETERR.ret.-1",
+        "SCSL.result.0",
+        "param.1001_00004",
+        "param.5010_00001",
+        "param.5010_00002",
+        "SCS",
+        "SCS.idtype.S",
+        "SCS.idtype.P",
+        "MCA",
+        "SCL",
+        "NCF",
+        "IC",
+        "IC.group.0",
+    )
 )
 def test_tool_data_errors_drives_and_signals_at_their_edges(wide: Living) -> None:
     found = told(
@@ -444,14 +481,19 @@ def test_tool_data_errors_drives_and_signals_at_their_edges(wide: Living) -> Non
             "G%",
             "MCA(100300004,3)",
             "MCA(100300004,0)",
+            "MCA(501000001,15)",
+            "MCA(501000002,15)",
+            "MCA(100300004,9)",
         ),
         *("?IC(80,3)", "?IC(95,3)", "?IC(81,3)", "?IC(94,3)", 'LEN(NCF("M8"))'),
     )
-    assert found == [-(2**31), 2**31 - 1, 0, 0, 0, 0, 3, 1, 1, 1, 0, 0, 0]
+    assert found == [-(2**31), 2**31 - 1, 0, 0, 0, 0, 3, 1, 0, 0, 1, 1, 1, 0, 0, 0]
     assert (wide.folder / "ONE").read_bytes() == b"0\n\x03\n"
     for statement in (
         "A%=TDA(1,1,3,0)", "A%=TDA(1,1,3,2)", "A%=TDA(1,1,50)", "A%=TDA(1,1,0)", "A%=TDA(1,0,3)", "A%=TDA(0,1,3)",
         "A=SCL(0,,1)", "IC(79)=TRUE", "IC(96)=TRUE", "IC(80,3)=TRUE",
+        "A=MCA(501000001,16)", "A=MCA(501000002,16)", "A=MCA(100300004,10)", "A=MCA(100300004,0,3)",
+        'A=SCS(1,"s",51)', 'A=SCS(1,"SP",51)', 'A=SCS(1,"S",32768)', 'A=SCS(1,"S",-1)',
     ):  # fmt: skip
         assert stopped(wide, statement) == "INVALID PARAMETER", statement
     assert stopped(wide, "TDA(1,1,3)=1.5").startswith("inconsistent data")

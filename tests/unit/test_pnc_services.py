@@ -248,7 +248,7 @@ def test_blocks_are_put_in_while_others_are_executed(two: Two) -> None:
     assert two.sav() is Sav.INACTIVE
 
 
-@pytest.mark.covers("cpl.MCOPS.4")
+@pytest.mark.covers("cpl.MCOPS.4", "cpl.MCOPS.4.code.4096")
 @pytest.mark.covers("cpl.ncs.26")
 @pytest.mark.covers("cpl.MCOPS")
 def test_a_buffer_that_is_full_takes_nothing(two: Two) -> None:
@@ -262,6 +262,15 @@ def test_a_buffer_that_is_full_takes_nothing(two: Two) -> None:
     pnc.cycle_start(channel=2)
     pnc.advance(3000)
     assert two.x2() == 2
+    assert two.ask("MCOPS(5,2)") == [0]
+    pnc.advance(100)
+    longest = [f'MCOPS(4,2,"G1{" " * (size - 2)}",,,4128)' for size in (4096, 4095)]
+    assert two.ask(*longest) == [26, 0]
+    assert two.ask("MCOPS(5,2)") == [0]
+    pnc.advance(100)
+    assert two.ask(
+        f'MCOPS(4,2,"G1{" " * 4091}",,,4128)', 'MCOPS(4,2,"G1",,,4128)', 'MCOPS(4,2,"F",,,4128)'
+    ) == [0, 26, 0]
 
 
 @pytest.mark.covers("cpl.MCOPS.4")
