@@ -151,6 +151,8 @@ def test_dialog_commands_take_the_last_that_is_allowed(tmp_path: Path) -> None:
         -1,
         -1,
     ]
+    corners = Shown("1 LIN(0,0,0,374) : LIN(632,374) : LIN(632,0) : LIN(0,0)", tmp_path)
+    assert [corners.colour(x, y) for x in (0, 632) for y in (0, 1, 373, 374)] == [1] * 8
     cleared = Shown("1 LIN(10,374,40,374) : LIN(0,0,0,9) : LIN(632,3,632,5) : CLR", tmp_path)
     assert int(cleared.surface.pixels.max()) == -1
     box = "1 COL(3) : LIN(10,10,20,10) : LIN(20,20) : LIN(10,20) : LIN(10,10) : FIL(15,15,5,"
@@ -377,6 +379,7 @@ def test_labels_of_a_sine_lie_beside_their_crosses(tmp_path: Path) -> None:
         label, digit = shown.surface.texts[2 * number : 2 * number + 2]
         assert label[:3] == (x + 16, y + 40, "pixel")
         assert digit[:3] == (x + 64, y + 40, str(number + 1))
+        assert shown.lines[45 - (y + 40) // 9][(x + 64) // 8] == str(number + 1)
 
 
 @pytest.mark.covers("cpl.GMD", *(f"cpl.GMD.type.{n}" for n in range(5)))
