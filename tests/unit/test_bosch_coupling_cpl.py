@@ -79,6 +79,7 @@ EXAMPLE_1 = """10 DIM BUF%(2)
 """
 
 
+@pytest.mark.covers("cpl.MCODS", "cpl.MCODS.32", "cpl.MCODS.32.elem.1", "cpl.MCODS.32.elem.2")
 def test_states_of_another_channel_are_read_at_once() -> None:
     cell = Cell()
     cell.image.channels[2].sav = Sav.PREPARING
@@ -88,6 +89,7 @@ def test_states_of_another_channel_are_read_at_once() -> None:
     assert cell.pauses == 0
 
 
+@pytest.mark.covers("cpl.MCODS", "cpl.MCODS.32", "cpl.MCODS.refresh.E")
 def test_a_loop_waits_until_a_channel_is_inactive() -> None:
     cell = Cell()
     channel = cell.image.channels[2]
@@ -110,6 +112,7 @@ def test_a_loop_waits_until_a_channel_is_inactive() -> None:
     assert cell.pauses == 9
 
 
+@pytest.mark.covers("cpl.MCODS.33", "cpl.MCODS.45", "cpl.MCODS.45.elem.2", "cpl.ncs.101")
 def test_names_of_the_axes_are_listed_but_not_of_those_that_are_none() -> None:
     cell = Cell()
     cell.run(
@@ -159,6 +162,7 @@ REASONS = ["dwell", "auxiliary", "transfer", "zero", "M0", "hold", "inhibit", "c
            "WAITA", "WAIT", "MCODS"]  # fmt: skip
 
 
+@pytest.mark.covers("cpl.MCODS.87", "cpl.MCODS.87.bit.0", "cpl.MCODS.87.bit.5", "cpl.MCODS.87.bit.13")
 def test_waiting_states_are_told_apart_by_masks() -> None:
     cell = Cell(Image({}, {}, {1: Channel(1)}))
     cell.image.channels[1].other_waits = Wait.DWELL | Wait.FEED_HOLD | Wait.AXIS_EXCHANGE | Wait.DATA_SERVICE
@@ -183,6 +187,7 @@ M30
     assert cell.printed == ["dwell", "hold", "G511", "MCODS"]
 
 
+@pytest.mark.covers("cpl.MCODS.43", "cpl.MCODS.constants")
 def test_axes_of_the_own_channel_are_found_and_moved() -> None:
     ran = Cell().run(
         """50 CHAN=SD(8)
@@ -227,6 +232,9 @@ def channels(mode: Mode) -> Image:
 PROGRAMS = {"sect.cnc": "N10 F1\nN50 F2\nN100 F3\nM30", "/usr/user/p1.cnc": "F7\nM30"}
 
 
+@pytest.mark.covers(
+    "cpl.MCOPS.4", "cpl.MCOPS.3", "cpl.MCOPS.4.code.1", "cpl.MCOPS.4.code.2", "cpl.MCOPS.4.code.64"
+)
 def test_examples_select_and_search_programs() -> None:
     cell = Cell(channels(Mode.AUTOMATIC), PROGRAMS)
     ran = cell.run(
@@ -244,6 +252,7 @@ def test_examples_select_and_search_programs() -> None:
     assert cell.image.channels[1].program == "/usr/user/p1.cnc"
 
 
+@pytest.mark.covers("cpl.MCOPS.2", "cpl.MCOPS.5", "cpl.MCOPS.7", "cpl.MCOPS.2.type.2", "cpl.MCOPS.5.type.2")
 def test_examples_reset_leave_and_switch_channels() -> None:
     cell = Cell(channels(Mode.MDI), PROGRAMS)
     for channel in cell.image.channels.values():
@@ -267,6 +276,7 @@ def test_examples_reset_leave_and_switch_channels() -> None:
     assert (second.sav, second.program) == (Sav.INACTIVE, "")
 
 
+@pytest.mark.covers("cpl.MCODS", "cpl.MCOPS", "cpl.MCODS.buffertype")
 @pytest.mark.parametrize(
     ("line", "what"),
     [
@@ -297,12 +307,14 @@ MMC = """10 DIM PROGNAME$(50)
 """
 
 
+@pytest.mark.covers("cpl.MMC", "cpl.MMC.ret.1")
 def test_without_a_client_mmc_answers_1_at_once() -> None:
     cell = Cell()
     ran = cell.run(MMC)
     assert (ran["#I%"], ran["#INT%"], ran["#LEN%"], cell.pauses) == (1, 1, 7, 0)
 
 
+@pytest.mark.covers("cpl.MMC", "cpl.MMC.ret.0")
 def test_a_client_gets_names_and_values_and_the_program_waits_for_its_answer() -> None:
     cell = Cell()
     seen: list[list[tuple[str, object]]] = []
@@ -323,6 +335,7 @@ def test_a_client_gets_names_and_values_and_the_program_waits_for_its_answer() -
     assert cell.pauses == 3
 
 
+@pytest.mark.covers("cpl.MMC", "cpl.MMC.ret.2")
 @pytest.mark.parametrize("value", [None, "x", True, 2.5, 2**31])
 def test_an_error_in_the_client_changes_nothing(value: object) -> None:
     cell = Cell()
@@ -339,6 +352,7 @@ def test_an_error_in_the_client_changes_nothing(value: object) -> None:
     assert (ran["#I%"], ran["#INT%"], ran["#REAL"]) == (2, 1, 1.100000023841858)
 
 
+@pytest.mark.covers("cpl.MMC", "cpl.MMC.ret.0")
 def test_fields_truth_values_and_nul_can_be_sent_20_variables_at_most() -> None:
     cell = Cell()
     seen: list[object] = []
@@ -366,6 +380,7 @@ def test_fields_truth_values_and_nul_can_be_sent_20_variables_at_most() -> None:
     assert cell.run(f"10 #E%=MMC({many})\n")["#E%"] == 0
 
 
+@pytest.mark.covers("cpl.MMC")
 def test_a_field_of_texts_comes_and_goes_as_texts() -> None:
     clients = Clients()
     text = CharacterField(4)

@@ -195,10 +195,38 @@ CASES = [
     Case(89, 1, "E", "R", (0.25, 0.75), coordinate("correction", 0.5)),
     Case(90, 1, "E", "I", (1, 0), coordinate("correction_active", True)),
 ]  # fmt: skip
+OF_VALUES = {
+    3: "elem.1 elem.2 elem.3", 6: "val.0 val.1", 18: "val.0", 26: "val.0 val.1", 29: "val.1", 31: "val.10",
+    32: "elem.1 elem.2", 39: "val.1", 40: "val.1", 43: "val.n val.-1 val.-3", 44: "elem.1 elem.2 elem.3",
+    45: "elem.1 elem.2", 46: "elem.1 elem.2 elem.3", 47: "val.0 val.1", 51: "elem.1 elem.2",
+    52: " ".join(f"elem.{n}" for n in range(1, 9)), 53: "val.0 val.1 val.2 val.3",
+    54: " ".join(f"elem.{n}" for n in range(1, 7)), 58: "val.n val.-1", 61: "val.1 val.2 val.3",
+    62: "val.-2147483648", 63: "val.0 val.2 val.6", 66: "val.1", 68: "elem.1 elem.2", 69: "elem.1 elem.2", 70: "val.1",
+    81: "val.1 val.2 val.3", 82: "elem.1 elem.2 elem.3",
+}  # fmt: skip
+"""Rows that the data of a case show besides that of the service."""
+NOT_SIMULATED = (41, 49, 65, 67, 89, 90)
 NARROWER = {"D": "R", "R": "I", "I": "S", "S": "I"}
 
 
-@pytest.mark.parametrize("case", CASES, ids=lambda case: f"{case.number} of {case.channel}")
+def rows(number: int, *more: str) -> pytest.MarkDecorator:
+    """Return the claims of a service and of rows below it, of those that a living control shows too."""
+    shown = () if number in NOT_SIMULATED else ("", *(f".{each}" for each in more))
+    return pytest.mark.covers("cpl.MCODS", *(f"cpl.MCODS.{number}{each}" for each in shown))
+
+
+@pytest.mark.parametrize(
+    "case",
+    [
+        pytest.param(
+            case,
+            id=f"{case.number} of {case.channel}",
+            marks=rows(case.number, *OF_VALUES.get(case.number, "").split()),
+        )
+        for case in CASES
+    ],
+)
+@pytest.mark.covers("cpl.MCODS.refresh", "cpl.MCODS.buffertype", "cpl.ncs.1", "cpl.ncs.0")
 def test_a_data_service_supplies_its_data_when_the_manual_says(case: Case) -> None:
     asking = Asking()
     image = asking.image
@@ -237,6 +265,7 @@ def test_a_data_service_supplies_its_data_when_the_manual_says(case: Case) -> No
         assert asking.values(case.number, case.channel, case.kind, size, *case.extra) != values
 
 
+@pytest.mark.covers("cpl.MCODS", "cpl.MCODS.39", "cpl.MCODS.refresh", "cpl.MCODS.refresh.E")
 def test_a_change_between_two_calls_ends_the_wait_even_if_it_was_taken_back() -> None:
     asking = Asking()
     buffer = Field("I", (1,))
@@ -253,6 +282,7 @@ def test_a_change_between_two_calls_ends_the_wait_even_if_it_was_taken_back() ->
     assert asking.server.is_awake
 
 
+@pytest.mark.covers("cpl.MCODS", "cpl.MCODS.refresh")
 def test_versions_of_other_data_do_not_make_a_call_wait() -> None:
     asking = Asking()
     buffer = Field("R", (8,))
@@ -262,6 +292,7 @@ def test_versions_of_other_data_do_not_make_a_call_wait() -> None:
         assert asking.version.value != before
 
 
+@pytest.mark.covers("cpl.MCODS.30")
 def test_the_version_is_ignored_for_the_main_program_and_31_bytes_hold_it() -> None:
     asking = Asking()
     asking.image.channels[1].program = "/usr/user/a_rather_long_one.cnc"
@@ -276,10 +307,10 @@ def test_the_version_is_ignored_for_the_main_program_and_31_bytes_hold_it() -> N
 @pytest.mark.parametrize(
     ("inch", "kinds", "value"),
     [
-        (True, "linear", 0),
-        (False, "linear", 1),
-        (True, "rotary", 2),
-        (True, None, 3),
+        pytest.param(True, "linear", 0, marks=rows(18, "val.0")),
+        pytest.param(False, "linear", 1, marks=rows(18, "val.1")),
+        pytest.param(True, "rotary", 2, marks=rows(18)),
+        pytest.param(True, None, 3, marks=rows(18)),
     ],
 )
 def test_the_type_of_programming_follows_the_axes_of_the_channel(inch: bool, kinds: Any, value: int) -> None:
@@ -297,9 +328,13 @@ MODES = [
 ]  # fmt: skip
 
 
+@pytest.mark.covers("cpl.MCODS.48")
 @pytest.mark.parametrize(
     ("name", "number"),
-    MODES,
+    [
+        pytest.param(name, number, marks=rows(31, f"val.{number}") if number != 11 else rows(48))
+        for name, number in MODES
+    ],
 )
 def test_modes_have_the_numbers_of_the_manual(name: str, number: int) -> None:
     asking = Asking()
@@ -316,6 +351,21 @@ SAVS = {
 IPOS = {"RUNNING": 1, "RUNNING_DOWN": 2, "STOPPED": 3}
 
 
+@pytest.mark.covers(
+    "cpl.MCODS.32",
+    "cpl.MCODS.32.elem.1",
+    "cpl.MCODS.32.elem.2",
+    "cpl.MCODS.32.sav.1",
+    "cpl.MCODS.32.sav.2",
+    "cpl.MCODS.32.sav.3",
+    "cpl.MCODS.32.sav.6",
+    "cpl.MCODS.32.sav.8",
+    "cpl.MCODS.32.sav.11",
+    "cpl.MCODS.32.sav.12",
+    "cpl.MCODS.32.ipo.1",
+    "cpl.MCODS.32.ipo.2",
+    "cpl.MCODS.32.ipo.3",
+)
 def test_states_have_the_numbers_of_the_manual() -> None:
     asking = Asking()
     for (sav, number), (ipo, other) in itertools.product(SAVS.items(), IPOS.items()):
@@ -323,6 +373,7 @@ def test_states_have_the_numbers_of_the_manual() -> None:
         assert asking.values(32, 1, "I", 2) == [number, other]
 
 
+@rows(6, "val.0", "val.1")
 def test_an_axis_is_in_position_in_its_window_without_a_travel_command() -> None:
     image = system()
     one, other = image.axes[1], image.axes[2]
@@ -355,6 +406,7 @@ FLAGS = [
         pytest.param(
             *row,
             id=str(row[0]),
+            marks=rows(row[0], *(f"val.{each}" for each in row[4:] if row[0] != 66)),
         )
         for row in FLAGS
     ],
@@ -378,6 +430,7 @@ WAITS = [
     (9, "AXIS_EXCHANGE"), (10, "PERMANENT_VARIABLE"), (11, "SIGNAL_ACTIVE"), (12, "SIGNAL_OR_TIME"),
     (13, "DATA_SERVICE"),
 ]  # fmt: skip
+SHOWN_WAITS = (0, 1, 3, 4, 5, 12, 13)
 DERIVED = {
     0: ("dwell", True), 1: ("auxiliary_waits", True), 2: ("transfer_inhibit", True), 3: ("potentiometer", 0.0),
     6: ("feed_inhibit", True),
@@ -386,7 +439,10 @@ DERIVED = {
 
 @pytest.mark.parametrize(
     ("bit", "name"),
-    WAITS,
+    [
+        pytest.param(bit, name, marks=rows(87, *([f"bit.{bit}"] if bit in SHOWN_WAITS else [])))
+        for bit, name in WAITS
+    ],
 )
 def test_a_waiting_channel_says_why(bit: int, name: str) -> None:
     asking = Asking()
@@ -407,6 +463,7 @@ def test_a_channel_waits_for_the_feed_inhibit_of_its_axes_only() -> None:
     assert asking.values(87, 1, "I", 1) == [0]
 
 
+@rows(87, "bit.13")
 def test_a_channel_that_waits_in_mcods_shows_it() -> None:
     asking = Asking()
     mine = Coupling(asking.server, asking.image, 1)
@@ -437,7 +494,7 @@ MOTIONS = [
 
 @pytest.mark.parametrize(
     ("value", "name"),
-    list(enumerate(MOTIONS)),
+    [pytest.param(value, name, marks=rows(63, f"val.{value}")) for value, name in enumerate(MOTIONS)],
 )
 def test_movements_of_spindles_have_the_numbers_of_the_manual(value: int, name: str) -> None:
     asking = Asking()
@@ -445,6 +502,7 @@ def test_movements_of_spindles_have_the_numbers_of_the_manual(value: int, name: 
     assert asking.values(63, -1, "I", 8) == [2, 0, value, 0, 0, 0, 0, 0]
 
 
+@rows(64)
 @pytest.mark.parametrize(
     "value",
     [40, 41, 42, 43, 44, 48],
@@ -462,7 +520,9 @@ def test_groups_of_spindles_are_passed_on(value: int) -> None:
     assert asking.values(65, -1, "I", 3) == [value, 0, 1]
 
 
-@pytest.mark.parametrize("value", range(5))
+@pytest.mark.parametrize(
+    "value", [pytest.param(value, marks=rows(54, f"type.{value}", "elem.6")) for value in range(5)]
+)
 def test_the_compensation_type_stands_sixth(value: int) -> None:
     asking = Asking()
     asking.image.channels[1].tool.kind = value
@@ -471,6 +531,7 @@ def test_the_compensation_type_stands_sixth(value: int) -> None:
     assert asking.values(54, 1, "R", 6) == [0.0] * 6
 
 
+@rows(52, *(f"elem.{n}" for n in range(1, 9)))
 def test_external_shifts_stand_in_the_order_of_the_logical_axes() -> None:
     image = system()
     for number in range(1, 12):
@@ -482,6 +543,10 @@ def test_external_shifts_stand_in_the_order_of_the_logical_axes() -> None:
     assert Asking(image).values(52, 1, "R", 9) == expected
 
 
+@rows(9, "val.-1")
+@rows(11, "val.-1")
+@rows(51, "elem.1", "elem.2")
+@pytest.mark.covers("cpl.MCODS.10", "cpl.MCODS.12", "cpl.MCODS.13", "cpl.MCODS.14")
 def test_without_compensation_numbers_are_minus_1_and_tables_three_blanks() -> None:
     asking = Asking()
     assert asking.values(9, 2, "I", 1) == [-1]
@@ -493,6 +558,7 @@ def test_without_compensation_numbers_are_minus_1_and_tables_three_blanks() -> N
     assert asking.values(51, 2, "R", 2) == [0.0, 0.0]
 
 
+@rows(81, "val.0", "val.1", "val.2", "val.3")
 def test_coordinates_have_units() -> None:
     asking = Asking()
     coordinate("unit", Unit.INCH)(asking.image)
@@ -500,6 +566,7 @@ def test_coordinates_have_units() -> None:
     assert asking.values(81, 2, "I", 2) == [1, 2]
 
 
+@rows(53, "val.0", "val.1", "val.2", "val.3")
 def test_the_unit_of_an_axis_depends_on_what_it_does() -> None:
     image = system()
     image.channels[1].inch = False
@@ -511,6 +578,7 @@ def test_the_unit_of_an_axis_depends_on_what_it_does() -> None:
     assert Asking(image).values(53, -1, "I", 8) == [0, 1, 1, 3, 2, 2, 4, 1]
 
 
+@rows(28)
 def test_a_message_has_80_characters_at_most() -> None:
     asking = Asking()
     asking.image.channels[1].message = "MEASURE " * 12
@@ -518,6 +586,10 @@ def test_a_message_has_80_characters_at_most() -> None:
     assert text == "MEASURE " * 10
 
 
+@rows(55)
+@rows(56)
+@rows(57)
+@pytest.mark.covers("cpl.ncs.24", "cpl.ncs.18")
 def test_drives_are_asked_by_physical_axis() -> None:
     asking = Asking()
     asking.image.axes[5].drive.motor = "M" * 50
@@ -533,6 +605,8 @@ def test_drives_are_asked_by_physical_axis() -> None:
         assert asking(number, -1, CharacterField(60), 60) == 18
 
 
+@rows(62)
+@pytest.mark.covers("cpl.ncs.18")
 def test_a_value_of_the_cyclic_telegram_is_asked_by_its_id() -> None:
     asking = Asking()
     assert asking.values(62, -1, "I", 1, 1, 40) == [4711]
@@ -541,6 +615,8 @@ def test_a_value_of_the_cyclic_telegram_is_asked_by_its_id() -> None:
     assert asking(62, -1, Field("I", (1,)), 1, 1) == 18
 
 
+@rows(42)
+@pytest.mark.covers("cpl.ncs.18", "cpl.ncs.102")
 def test_customers_data_are_selected_by_a_number_of_16_bits() -> None:
     asking = Asking()
     asking.image.customer[1, 0] = "SERIAL 0815"
@@ -553,6 +629,7 @@ def test_customers_data_are_selected_by_a_number_of_16_bits() -> None:
     assert asking(42, 1, Field("I", (1,)), 1, 3) == 102
 
 
+@pytest.mark.covers("cpl.MCODS", "cpl.MCODS.34", "cpl.ncs.102")
 @pytest.mark.parametrize(
     "number",
     [-1, 0, 17, 21, 22, 34, 84, 85, 86, 88, 91],
@@ -565,6 +642,7 @@ def test_what_the_manual_does_not_describe_is_not_available(number: int) -> None
     assert asking.version.value == 0
 
 
+@pytest.mark.covers("cpl.MCODS", "cpl.ncs.1", "cpl.MCODS.7", "cpl.MCODS.33", "cpl.MCODS.1")
 @pytest.mark.parametrize(("number", "channel"), [(7, -1), (7, 0), (7, 3), (33, 0), (33, 3), (1, 3), (1, -2)])
 def test_a_channel_that_does_not_exist_is_refused(number: int, channel: int) -> None:
     asking = Asking()
@@ -573,6 +651,7 @@ def test_a_channel_that_does_not_exist_is_refused(number: int, channel: int) -> 
     assert asking.version.value == 0
 
 
+@pytest.mark.covers("cpl.ncs.100", "cpl.ncs.101", "cpl.MCODS", "cpl.MCOPS")
 def test_a_broken_connection_and_a_strange_message_are_told() -> None:
     asking = Asking()
     stranger = Coupling(asking.server, magic=4711)
@@ -587,6 +666,7 @@ def test_a_broken_connection_and_a_strange_message_are_told() -> None:
     assert asking(7, 1, buffer, 1) == 0
 
 
+@pytest.mark.covers("cpl.MCODS", "cpl.MCODS.buffertype", "cpl.err.INVALID_FIELD_LIMIT")
 @pytest.mark.parametrize(
     ("number", "buffer", "size", "what"),
     [
@@ -608,6 +688,7 @@ def test_the_buffer_has_to_fit_the_data(number: int, buffer: Variable, size: int
         asking(number, -1 if number == 1 else 1, buffer, size)
 
 
+@pytest.mark.covers("cpl.MCODS.buffertype", "cpl.MCODS.45", "cpl.MCODS.45.elem.1", "cpl.MCODS.32")
 def test_whole_numbers_go_into_wider_variables_and_single_ones_into_simple_variables() -> None:
     asking = Asking()
     wide = Field("D", (2,))
@@ -619,6 +700,7 @@ def test_whole_numbers_go_into_wider_variables_and_single_ones_into_simple_varia
     assert simple.value == 6.0
 
 
+@pytest.mark.covers("cpl.MCODS", "cpl.MCODS.refresh")
 @pytest.mark.parametrize(
     "version", [Box("V", "R", None), Box("V!", "D", 0.0), Box("V", "R", 1.5), Box("V?", "B", True)]
 )
@@ -628,6 +710,7 @@ def test_the_version_has_to_be_an_initialised_integer_or_real(version: Box) -> N
         coupling.mcods(7, 1, version, Box("B", "R", None), 1)
 
 
+@pytest.mark.covers("cpl.MCODS", "cpl.MCODS.refresh")
 def test_versions_fit_into_a_real_variable() -> None:
     asking = Asking()
     asking.server.ledger.last = 2**24 - 2
@@ -656,7 +739,10 @@ CATEGORIES = {
 
 @pytest.mark.parametrize(
     ("category", "numbers"),
-    list(CATEGORIES.items()),
+    [
+        pytest.param(name, numbers, marks=pytest.mark.covers(f"cpl.MCODS.cat.{name.replace(' ', '_')}"))
+        for name, numbers in CATEGORIES.items()
+    ],
 )
 def test_the_overview_lists_what_the_control_answers(category: str, numbers: str) -> None:
     listed = [int(number) for number in numbers.split()]

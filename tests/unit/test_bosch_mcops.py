@@ -96,6 +96,7 @@ def test_what_was_done_is_done_anew_when_it_is_asked_for_again() -> None:
         assert rig.channel.program == ""
 
 
+@pytest.mark.covers("cpl.MCOPS", "cpl.MCOPS.4", "cpl.MCOPS.6")
 def test_a_program_is_selected_started_and_executed() -> None:
     rig = Rig()
     assert rig.state() == (1, 3)
@@ -114,6 +115,7 @@ def test_a_program_is_selected_started_and_executed() -> None:
     assert rig.channel.program == ""
 
 
+@pytest.mark.covers("cpl.MCOPS.6", "cpl.ncs.9", "cpl.ncs.10")
 def test_only_what_is_selected_and_ready_starts() -> None:
     rig = Rig()
     assert rig(6, 2) == 10
@@ -123,6 +125,18 @@ def test_only_what_is_selected_and_ready_starts() -> None:
     assert rig(6, 2) == 9
 
 
+@pytest.mark.covers(
+    "cpl.MCOPS",
+    "cpl.ncs.1",
+    "cpl.MCOPS.1",
+    "cpl.MCOPS.2",
+    "cpl.MCOPS.3",
+    "cpl.MCOPS.4",
+    "cpl.MCOPS.5",
+    "cpl.MCOPS.6",
+    "cpl.MCOPS.7",
+    "cpl.MCOPS.8",
+)
 @pytest.mark.parametrize("call", [(1,), (2,), (3,), (4,), (5,), (6,), (7,), (8,), (9,)])
 @pytest.mark.parametrize("channel", [0, 3, -1, -2])
 def test_services_need_a_channel_that_exists(call: tuple[int], channel: int) -> None:
@@ -131,6 +145,7 @@ def test_services_need_a_channel_that_exists(call: tuple[int], channel: int) -> 
     assert Rig()(call[0], channel, *more) == expected
 
 
+@pytest.mark.covers("cpl.ncs.3", "cpl.MCODS.32.sav.8")
 def test_nothing_is_accepted_while_a_control_reset_is_under_way() -> None:
     rig = Rig()
     assert rig(2, 2) == 0
@@ -152,6 +167,7 @@ def test_nothing_is_accepted_while_a_control_reset_is_under_way() -> None:
     assert rig(7, 2, 4) == 0
 
 
+@pytest.mark.covers("cpl.MCOPS.2", "cpl.MCOPS.2.type.2", "cpl.ncs.18")
 def test_a_control_reset_leaves_the_program_and_clears_errors() -> None:
     rig = Rig()
     rig.channel.reselection = True
@@ -174,6 +190,7 @@ def test_a_control_reset_leaves_the_program_and_clears_errors() -> None:
     assert rig(2, 2, 1) == 18
 
 
+@pytest.mark.covers("cpl.MCOPS.2")
 def test_a_system_reset_is_one_of_all_channels() -> None:
     rig = Rig()
     assert rig(4, 1, "/usr/user/p1.cnc", cycles=1) == 0
@@ -184,6 +201,7 @@ def test_a_system_reset_is_one_of_all_channels() -> None:
     assert {channel.sav for channel in rig.image.channels.values()} == {Sav.INACTIVE}
 
 
+@pytest.mark.covers("cpl.MCOPS.1", "cpl.ncs.8", "cpl.ncs.10")
 def test_cancelled_blocks_are_prepared_anew_but_their_values_are_not() -> None:
     rig = Rig(block_cycles=4)
     assert rig(1, 2) == 10
@@ -216,6 +234,7 @@ def test_cancelled_blocks_are_prepared_anew_but_their_values_are_not() -> None:
 SEARCH = ["  N5 G0", "\tN50X100", "G1X100", "G1X10 F5", "50A=1", "50A =1", "N100X3", "N10X1", "M30"]
 
 
+@pytest.mark.covers("cpl.MCOPS.3", "cpl.ncs.14")
 @pytest.mark.parametrize(
     ("wanted", "index", "code"),
     [
@@ -234,6 +253,7 @@ def test_a_block_is_found_by_its_beginning(wanted: str, index: int, code: int) -
     assert rig.state() == (2, 3)
 
 
+@pytest.mark.covers("cpl.MCOPS.3", "cpl.ncs.15", "cpl.ncs.10", "cpl.ncs.2", "cpl.ncs.14")
 def test_the_search_is_refused_once_the_program_runs() -> None:
     rig = Rig()
     assert rig(3, 2, "N50") == 10
@@ -250,6 +270,7 @@ def test_the_search_is_refused_once_the_program_runs() -> None:
     assert not rig.channel.other_waits & Wait.PROGRAM_STOP
 
 
+@pytest.mark.covers("cpl.MCOPS.3", "cpl.MCOPS.4")
 def test_only_the_searched_part_is_machined_with_its_last_block() -> None:
     rig = Rig()
     rig.select("N60", "N100", 1)
@@ -261,6 +282,7 @@ def test_only_the_searched_part_is_machined_with_its_last_block() -> None:
     assert rig.station.errors == []
 
 
+@pytest.mark.covers("cpl.MCOPS.4", "cpl.MCOPS.4.code.2", "cpl.ncs.6")
 def test_a_missing_program_is_told_at_once_only_with_code_2() -> None:
     rig = Rig()
     assert rig(4, 2, "nothing.cnc", cycles=1) == 0
@@ -273,6 +295,7 @@ def test_a_missing_program_is_told_at_once_only_with_code_2() -> None:
     assert rig.state() == (11, 3)  # answered when it was ready
 
 
+@pytest.mark.covers("cpl.MCOPS.4", "cpl.MCOPS.4.code.1")
 def test_cpl_runs_only_from_a_link_table() -> None:
     rig = Rig()
     assert rig(4, 2, "loop.cnc", cycles=1) == 0
@@ -288,6 +311,7 @@ def test_cpl_runs_only_from_a_link_table() -> None:
     assert rig(6, 1) == 0
 
 
+@pytest.mark.covers("cpl.MCOPS.4", "cpl.MCOPS.4.code.64", "cpl.MCOPS.4.code.2048", "cpl.ncs.11")
 def test_another_program_waits_until_the_active_one_is_left_or_replaced() -> None:
     rig = Rig()
     rig.select()
@@ -302,6 +326,7 @@ def test_another_program_waits_until_the_active_one_is_left_or_replaced() -> Non
     assert (rig.channel.program, rig.channel.programmed_feed) == ("sect.cnc", 0.0)
 
 
+@pytest.mark.covers("cpl.MCOPS.4", "cpl.MCOPS.4.code.32", "cpl.ncs.8", "cpl.ncs.2", "cpl.ncs.18")
 def test_a_manual_block_needs_its_mode_and_is_started_by_the_next_call() -> None:
     rig = Rig()
     assert rig(4, 2, "F1000G1X500", OMITTED, OMITTED, 32) == 8
@@ -317,6 +342,7 @@ def test_a_manual_block_needs_its_mode_and_is_started_by_the_next_call() -> None
     assert rig.channel.blocks == 1
 
 
+@pytest.mark.covers("cpl.MCOPS.4.code.32", "cpl.MCOPS.4.code.2048")
 def test_a_manual_block_is_replaced() -> None:
     rig = Rig(mode=Mode.MDI)
     assert rig(4, 2, "X500", OMITTED, OMITTED, 32) == 0
@@ -326,6 +352,7 @@ def test_a_manual_block_is_replaced() -> None:
     assert rig.image.axes[1].setpoint == 23.5
 
 
+@pytest.mark.covers("cpl.MCOPS.4.code.128", "cpl.ncs.25")
 def test_a_manual_block_that_starts_at_once_is_read_before() -> None:
     rig = Rig(mode=Mode.MDI)
     assert rig(4, 2, "G1 X=", OMITTED, OMITTED, 32 + 128) == 25
@@ -336,6 +363,7 @@ def test_a_manual_block_that_starts_at_once_is_read_before() -> None:
     assert rig.image.axes[1].setpoint == 33.5
 
 
+@pytest.mark.covers("cpl.MCOPS.4.code.1024", "cpl.MCOPS.4.code.128", "cpl.ncs.25")
 def test_a_machine_function_runs_beside_the_program() -> None:
     rig = Rig()
     rig.select()
@@ -351,7 +379,13 @@ def test_a_machine_function_runs_beside_the_program() -> None:
     assert rig.image.channels[1].sav == Sav.INACTIVE
 
 
-@pytest.mark.parametrize(("mode", "code", "other"), [(1, 256, 512), (14, 256, 512), (2, 512, 256)])
+@pytest.mark.parametrize(
+    ("mode", "code", "other"),
+    [
+        pytest.param(mode, code, other, marks=pytest.mark.covers("cpl.MCOPS.4", f"cpl.MCOPS.4.code.{code}"))
+        for mode, code, other in ((1, 256, 512), (14, 256, 512), (2, 512, 256))
+    ],
+)
 def test_axes_move_by_hand_only_after_the_selection_for_it(mode: int, code: int, other: int) -> None:
     rig = Rig()
     axis = rig.image.axes[1]
@@ -366,6 +400,7 @@ def test_axes_move_by_hand_only_after_the_selection_for_it(mode: int, code: int,
     assert axis.referenced == (mode == 2)
 
 
+@pytest.mark.covers("cpl.MCOPS.4.code.4096", "cpl.ncs.26", "cpl.MCODS.32.sav.12")
 def test_blocks_are_entered_while_others_are_executed() -> None:
     rig = Rig(mode=Mode.MDI)
     assert rig(4, 2, "G1 X10\nX20", OMITTED, OMITTED, 32 + 4096) == 0
@@ -384,6 +419,7 @@ def test_blocks_are_entered_while_others_are_executed() -> None:
     assert rig.image.axes[1].setpoint == 11.5
 
 
+@pytest.mark.covers("cpl.MCOPS.4.code.4096", "cpl.ncs.7")
 def test_two_clients_cannot_write_into_the_buffer_in_the_same_cycle() -> None:
     rig = Rig(mode=Mode.MDI)
     other = Coupling(rig.server, channel=2)
@@ -397,6 +433,7 @@ def test_two_clients_cannot_write_into_the_buffer_in_the_same_cycle() -> None:
     assert rig.station.job.blocks == ["X77"]  # type: ignore[union-attr]
 
 
+@pytest.mark.covers("cpl.MCOPS.6", "cpl.ncs.5")
 def test_axes_without_reference_points_keep_a_channel_from_starting() -> None:
     rig = Rig()
     rig.partner.references_needed.add(2)
@@ -406,6 +443,7 @@ def test_axes_without_reference_points_keep_a_channel_from_starting() -> None:
     assert rig(6, 2) == 0
 
 
+@pytest.mark.covers("cpl.MCOPS", "cpl.MCOPS.4", "cpl.MCOPS.5", "cpl.MCOPS.7", "cpl.MCOPS.8", "cpl.ncs.18")
 @pytest.mark.parametrize(
     "call",
     [(7, 2), (7, 2, 3), (7, 2, 0), (7, 2, 5, 1), (8, 2, 1), (8, 2, 4, 1), (8, 2, 1, 0), (6, 2, 1),
@@ -418,6 +456,7 @@ def test_parameters_that_a_service_does_not_know_are_refused(call: tuple[object,
     assert (rig.channel.mode, rig.channel.return_how, rig.channel.sav) == (5, 1, 1)
 
 
+@pytest.mark.covers("cpl.MCOPS", "cpl.MCOPS.7", "cpl.ncs.102")
 def test_parameters_have_their_types() -> None:
     rig = Rig()
     assert rig(7.0, 2.0, 4.0) == 0
@@ -436,7 +475,16 @@ MODES = [(1, "JOG"), (2, "REFERENCE"), (4, "MDI"), (5, "AUTOMATIC"), (6, "PROGRA
 
 @pytest.mark.parametrize(
     ("number", "name"),
-    MODES,
+    [
+        pytest.param(
+            number,
+            name,
+            marks=pytest.mark.covers(
+                "cpl.MCOPS.7", *([] if number in (11, 14) else [f"cpl.MCOPS.7.mode.{number}"])
+            ),
+        )
+        for number, name in MODES
+    ],
 )
 def test_the_mode_is_switched_by_its_number(number: int, name: str) -> None:
     rig = Rig(mode=Mode.NONE)
@@ -447,6 +495,7 @@ def test_the_mode_is_switched_by_its_number(number: int, name: str) -> None:
     assert buffer[1] == number
 
 
+@pytest.mark.covers("cpl.MCOPS.7", "cpl.ncs.13")
 def test_a_selected_program_or_the_plc_keeps_the_mode() -> None:
     rig = Rig()
     rig.select()
@@ -462,6 +511,7 @@ def test_a_selected_program_or_the_plc_keeps_the_mode() -> None:
     assert rig(7, 1, 6) == 0
 
 
+@pytest.mark.covers("cpl.MCOPS.6", "cpl.MCOPS.7")
 @pytest.mark.parametrize("mode", [6, 7, 10, 12])
 def test_single_blocks_stop_one_after_the_other(mode: int) -> None:
     rig = Rig()
@@ -473,6 +523,7 @@ def test_single_blocks_stop_one_after_the_other(mode: int) -> None:
         assert rig.channel.blocks == number
 
 
+@pytest.mark.covers("cpl.MCOPS.5", "cpl.MCOPS.5.type.2", "cpl.ncs.10")
 def test_a_program_is_left_and_selected_again_if_the_channel_does_that() -> None:
     rig = Rig()
     assert rig(5, 2, 2) == 10
@@ -490,6 +541,18 @@ def test_a_program_is_left_and_selected_again_if_the_channel_does_that() -> None
 RETURNS = [(1, 1), (2, 2), (3, 3), (1, 3)]
 
 
+@pytest.mark.covers(
+    "cpl.MCOPS.8",
+    "cpl.MCODS.46",
+    "cpl.MCODS.46.elem.1",
+    "cpl.MCODS.46.elem.2",
+    "cpl.MCOPS.8.how.1",
+    "cpl.MCOPS.8.how.2",
+    "cpl.MCOPS.8.how.3",
+    "cpl.MCOPS.8.where.1",
+    "cpl.MCOPS.8.where.2",
+    "cpl.MCOPS.8.where.3",
+)
 @pytest.mark.parametrize(("how", "where"), RETURNS)
 def test_the_return_strategy_is_shown(how: int, where: int) -> None:
     rig = Rig()
@@ -511,6 +574,7 @@ def test_jog_movements_are_recorded_for_the_return_until_that_is_stopped() -> No
     assert stopped[3] == 0
 
 
+@pytest.mark.covers("cpl.MCODS.32.ipo.2", "cpl.MCODS.32.elem.2", "cpl.MCODS.87.bit.5")
 def test_the_interpolator_runs_down_when_the_feed_is_held() -> None:
     rig = Rig(block_cycles=6)
     rig.select("N50", "N50")
@@ -530,6 +594,7 @@ def test_the_interpolator_runs_down_when_the_feed_is_held() -> None:
     assert rig.image.axes[1].setpoint == 103.5
 
 
+@pytest.mark.covers("cpl.MCODS.39")
 def test_a_dwell_is_shown_while_it_lasts() -> None:
     rig = Rig(mode=Mode.MDI, block_cycles=3)
     assert rig(4, 2, "G4 F2", OMITTED, OMITTED, 32 + 128, cycles=1) == 0

@@ -83,7 +83,7 @@ def test_drilling_programs_follow_every_move_until_they_are_cancelled(root: Root
     assert (found["#P"][1:5], found["#N%"], found["#Q"]) == ([5, 10, 10, 40], 4, 3.5)
 
 
-@pytest.mark.covers("cpl.nc.G81_G86")
+@pytest.mark.covers("cpl.nc.G81_G86", "cpl.sub.GMP")
 @pytest.mark.parametrize("code", range(81, 87))
 def test_each_drilling_cycle_has_its_program(root: Root, code: int) -> None:
     root.write(f"999990{code}", f"1 #C%={code}\n".encode())

@@ -8,6 +8,7 @@ from pathlib import Path
 
 import pytest
 
+from support.cpl_rows import rows_of
 from support.cpl_runs import Root
 
 END = b"\x03\n"
@@ -375,53 +376,120 @@ def test_numbers_at_their_limits_are_read(root: Root) -> None:
     assert [found[f"#{name}"] for name in ("A%", "B%", "C!", "D?", "E?")] == [-(2**31), 17, 4.5, True, False]
 
 
+# ---------------------------------------------------------------------- the last that is allowed
+
+
+@pytest.mark.covers(
+    *(f"cpl.{each}" for each in (
+        "OPENW", "OPENR", "CLOSE", "PRN#", "INP#", "INP#.semicolon", "EOF", "REWRITE", "FILEPOS", "FILEPOS.mode.1",
+        "FILEPOS.mode.2", "FILEPOS.mode.3", "SEEK", "FILESIZE", "FILESIZE.k.1", "FILESIZE.k.2", "FILESIZE.k.3",
+        "FILESIZE.k.4", "ERASE", "ERASE.ret.0", "FILEDATE", "FILEDATE.mode.1", "FILEACCESS", "file.random", "file.seq",
+        "file.name", "err.BLOCK_EXCEEDS_1024", "err.ILLEGAL_FILE_SIZE", "err.INVALID_COMPONENT_LENGTH",
+        "err.INVALID_LOGICAL_NUMBER", "err.INVALID_FILE_NAME", "err.INVALID_COMPONENT", "PRN#.n.1-9",
+    ))
+)  # fmt: skip
+def test_files_take_the_last_that_is_allowed(root: Root) -> None:
+    """Nine files; 130 bytes, records of 1 and 1024 characters, of 512 twice, a place behind the last."""
+    name = "P2345678901234567890123456789X"
+    (root.folder / "A_LONG_FOLDER").mkdir()
+    found = root.run(
+        f'1 OPENW(9,"ONE",130,1) : OPENW(8,"{name}",130,1024) : DIM L$(1024) : DIM H$(512) : DIM R$(1024)\n'
+        f'2 H$="{"H" * 512}" : L$=H$+H$ : OPENW(1,"SEQ",130)\n'
+        "3 PRN#(9,CHR$(65)) : PRN#(9,CHR$(66)) : PRN#(8,L$) : PRN#(1,L$) : PRN#(1,H$;) : PRN#(1,H$)\n"
+        "4 #A%=FILEPOS(9) : SEEK(9,3) : #B%=FILEPOS(9) : #C%=FILEPOS(9,1) : SEEK(9,2,2) : #D%=FILEPOS(9,3)\n"
+        '5 CLOSE(9) : CLOSE(8) : CLOSE(1) : OPENR(9,"ONE",1) : OPENR(1,"SEQ") : OPENR(8,"{0}",1024)\n'
+        "6 #E%=FILESIZE(9) : #F%=FILESIZE(9,2) : #G%=FILESIZE(9,3) : #H%=FILESIZE(9,4) : #I%=FILESIZE(8,4)\n"
+        "7 #J%=FILESIZE(1) : #K%=FILESIZE(1,2) : SEEK(1,2051) : #L?=EOF(1) : SEEK(1,2050) : #M?=EOF(1)\n"
+        "8 #N%=FILEPOS(1) : SEEK(1,1) : INP#(1,R$;) : #O%=FILEPOS(1) : INP#(1,R$) : #P%=LEN(R$) : #Q?=EOF(1)\n"
+        '9 CLOSE(1) : CLOSE(8) : CLOSE(9) : DIM F$(60) : F$="A_LONG_FOLDER/{0}" : OPENW(2,F$) : CLOSE(2)\n'
+        '10 DIM D$(9) : D$=FILEDATE("ONE") : #R?=D$=FILEDATE("ONE",1) : #S%=LEN(D$) : #T%=ERASE(F$)\n'
+        "11 #U%=FILEACCESS(F$)".replace("{0}", name)
+    ).variables
+    numbers = {each: found[f"#{each}%"] for each in "ABCDEFGHIJKNOPSTU"}
+    assert numbers == {
+        "A": 3, "B": 3, "C": 5, "D": 2, "E": 6, "F": 4, "G": 2, "H": 2, "I": 1, "J": 2052, "K": 2050, "N": 2050,
+        "O": 1026, "P": 1024, "S": 8, "T": 0, "U": -1,
+    }  # fmt: skip
+    assert [found[f"#{each}?"] for each in "LMQR"] == [True, False, True, True]
+
+
+@pytest.mark.covers("cpl.INP#", "cpl.err.INVALID_INTEGER_VALUE", "cpl.err.INVALID_FLOAT_VALUE")
+@pytest.mark.covers("cpl.INP#.semicolon")
+def test_numbers_are_read_up_to_the_largest(root: Root) -> None:
+    largest = b"340282346638528859811704183484516925440"
+    root.write("P2", b"2147483647 -2147483648\n-2147483649\n" + largest + b" .5 -.25 7.\nAB\nCD\n" + END)
+    found = root.run(
+        '1 OPENR(1,"P2")\n2 INP#(1,#A%,#B%)\n3 INP#(1,Q$)\n4 INP#(1,#C,#D,#E,#F)\n'.replace("Q$", "DUMMY!")
+        + '5 DIM R$(2) : INP#(1,R$;) : #P%=FILEPOS(1) : INP#(1,R$;) : #Q?=R$="CD"'
+    ).variables
+    assert [found[f"#{each}%"] for each in "AB"] == [2**31 - 1, -(2**31)]
+    assert [found[f"#{each}"] for each in "CDEF"] == [float(largest), 0.5, -0.25, 7.0]
+    assert (found["#P%"], found["#Q?"]) == (90, True)
+    assert root.error('1 OPENR(1,"P2")\n2 SEEK(1,24)\n3 INP#(1,A%)') == "3: INVALID INTEGER VALUE"
+
+
 # ---------------------------------------------------------------------- refusals
+
+
+REFUSED = [
+    ('1 OPENW(0,"P1")', "1: INVALID LOGICAL NUMBER"),
+    ('1 OPENW(10,"P1")', "1: INVALID LOGICAL NUMBER", "cpl.err.INVALID_LOGICAL_NUMBER"),
+    ('1 OPENW(1,"P1",129)', "1: ILLEGAL FILE SIZE", "cpl.err.ILLEGAL_FILE_SIZE"),
+    ('1 OPENW(1,"P1",130,1025)', "1: INVALID COMPONENT LENGTH", "cpl.err.INVALID_COMPONENT_LENGTH"),
+    ('1 OPENW(1,"P1",130,0)', "1: INVALID COMPONENT LENGTH"),
+    ('1 OPENW(1,"P1")\n2 OPENR(1,"P1")', "2: INVALID LOGICAL NUMBER"),
+    ('1 OPENW(1,"P1")\n2 OPENW(2,"P1")', "2: FILE ALREADY OPEN"),
+    ('1 OPENW(1,"main.npg")', "1: FILE ALREADY OPEN"),
+    ('1 OPENR(1,"P1")\n2 PRN#(1,"A")', "2: INVALID LOGICAL NUMBER"),
+    ('1 OPENW(1,"P1")\n2 INP#(1,A%)', "2: INVALID LOGICAL NUMBER"),
+    ("1 CLOSE(4)", "1: INVALID LOGICAL NUMBER"),
+    ("1 A%=FILEPOS(10)", "1: INVALID FILE NUMBER", "cpl.err.INVALID_FILE_NUMBER"),
+    ('1 OPENR(1,"P1")\n2 A%=FILEPOS(1,2)', "2: INVALID PARAMETER"),
+    ('1 OPENW(1,"P1",200,8)\n2 A%=FILEPOS(1,4)', "2: INVALID PARAMETER"),
+    ("1 SEEK(11,1)", "1: INVALID FILE NUMBER"),
+    ('1 OPENR(1,"P1")\n2 SEEK(1,1,1)', "2: INVALID PARAMETER"),
+    ('1 OPENR(1,"P1")\n2 SEEK(1,2)', "2: INVALID COMPONENT"),
+    ('1 OPENW(1,"P1",200,8)\n2 PRN#(1,"A")\n3 SEEK(1,3)', "3: INVALID COMPONENT", "cpl.err.INVALID_COMPONENT"),
+    ('1 OPENW(1,"P1",200,8)\n2 PRN#(1,"A")\n3 SEEK(1,1,10)', "3: INVALID PARAMETER"),
+    ('1 OPENW(1,"P1",200,8)\n2 PRN#(1,"A")\n3 SEEK(1,1,0)', "3: INVALID PARAMETER"),
+    ('1 OPENW(1,"P1",200,8)\n2 SEEK(1,-1)', "2: INVALID COMPONENT"),
+    ('1 OPENR(1,"P1")\n2 SEEK(1,-1)', "2: INVALID COMPONENT"),
+    ('1 OPENW(1,"P1")\n2 PRN#(1,"AB")\n3 CLOSE(1)\n4 OPENR(1,"P1")\n5 SEEK(1,5)', "5: INVALID COMPONENT"),
+    ('1 OPENR(1,"P1",0)', "1: INVALID COMPONENT LENGTH"),
+    ('1 OPENR(1,"P1",1025)', "1: INVALID COMPONENT LENGTH"),
+    ('1 OPENR(0,"P1")', "1: INVALID LOGICAL NUMBER"),
+    ("1 A?=EOF(0)", "1: INVALID LOGICAL NUMBER"),
+    ('1 OPENR(1,"P1")\n2 A%=FILESIZE(1,0)', "2: INVALID PARAMETER"),
+    ('1 OPENR(1,"P1",8)\n2 A%=FILESIZE(1,5)', "2: INVALID PARAMETER"),
+    ('1 OPENR(1,"P1",8)\n2 A%=FILEPOS(1,0)', "2: INVALID PARAMETER"),
+    ('1 OPENR(1,"P1")\n2 A%=FILEPOS(1,3)', "2: INVALID PARAMETER"),
+    ('1 OPENR(1,"P1")\n2 REWRITE(1)', "2: INVALID LOGICAL NUMBER"),
+    ('1 DIM D$(9) : D$=FILEDATE("P1",0)', "1: INVALID PARAMETER"),
+    ('1 DIM D$(9) : D$=FILEDATE("P1",3)', "1: INVALID PARAMETER"),
+    ("1 A%=FILESIZE(0)", "1: INVALID FILE NUMBER"),
+    ('1 OPENR(1,"P1")\n2 A%=FILESIZE(1,3)', "2: INVALID PARAMETER"),
+    ('1 I%=ERASE("P234567890123456789012345678901")', "1: INVALID FILE NAME", "cpl.err.INVALID_FILE_NAME"),
+    ('1 OPENW(1,"..")', "1: INVALID FILE NAME"),
+    ('1 OPENW(1,"../P1")', "1: INVALID FILE NAME"),
+    ('1 OPENW(1,"OUT/P1")', "1: INVALID FILE NAME"),
+    ('1 OPENR(1,"LINK")', "1: INVALID FILE NAME"),
+    ('1 OPENR(1,"PIPE")', "1: INVALID FILE NAME"),
+    ('1 OPENR(1,"cpl.store")', "1: INVALID FILE NAME"),
+    ('1 OPENR(1,"A/P1")', "1: FILE CANNOT BE WRITTEN"),
+    ('1 DIM A$(1000)\n2 A$="' + "A" * 600 + '"\n3 OPENW(1,"P1")\n4 PRN#(1,A$,A$)',
+                     "4: BLOCK EXCEEDS 1024 BYTES", "cpl.err.BLOCK_EXCEEDS_1024"),
+    ('1 DIM A$(1000)\n2 A$="' + "A" * 600 + '"\n3 OPENW(1,"P1")\n4 PRN#(1,A$;)\n5 PRN#(1,A$)',
+         "5: BLOCK EXCEEDS 1024 BYTES"),
+]  # fmt: skip
 
 
 @pytest.mark.parametrize(
     ("program", "what"),
     [
-        ('1 OPENW(0,"P1")', "1: INVALID LOGICAL NUMBER"),
-        pytest.param('1 OPENW(10,"P1")', "1: INVALID LOGICAL NUMBER",
-                     marks=pytest.mark.covers("cpl.err.INVALID_LOGICAL_NUMBER")),
-        pytest.param('1 OPENW(1,"P1",129)', "1: ILLEGAL FILE SIZE",
-                     marks=pytest.mark.covers("cpl.err.ILLEGAL_FILE_SIZE")),
-        pytest.param('1 OPENW(1,"P1",130,1025)', "1: INVALID COMPONENT LENGTH",
-                     marks=pytest.mark.covers("cpl.err.INVALID_COMPONENT_LENGTH")),
-        ('1 OPENW(1,"P1",130,0)', "1: INVALID COMPONENT LENGTH"),
-        ('1 OPENW(1,"P1")\n2 OPENR(1,"P1")', "2: INVALID LOGICAL NUMBER"),
-        ('1 OPENW(1,"P1")\n2 OPENW(2,"P1")', "2: FILE ALREADY OPEN"),
-        ('1 OPENW(1,"main.npg")', "1: FILE ALREADY OPEN"),
-        ('1 OPENR(1,"P1")\n2 PRN#(1,"A")', "2: INVALID LOGICAL NUMBER"),
-        ('1 OPENW(1,"P1")\n2 INP#(1,A%)', "2: INVALID LOGICAL NUMBER"),
-        ("1 CLOSE(4)", "1: INVALID LOGICAL NUMBER"),
-        pytest.param("1 A%=FILEPOS(10)", "1: INVALID FILE NUMBER",
-                     marks=pytest.mark.covers("cpl.err.INVALID_FILE_NUMBER")),
-        ('1 OPENR(1,"P1")\n2 A%=FILEPOS(1,2)', "2: INVALID PARAMETER"),
-        ('1 OPENW(1,"P1",200,8)\n2 A%=FILEPOS(1,4)', "2: INVALID PARAMETER"),
-        ("1 SEEK(11,1)", "1: INVALID FILE NUMBER"),
-        ('1 OPENR(1,"P1")\n2 SEEK(1,1,1)', "2: INVALID PARAMETER"),
-        ('1 OPENR(1,"P1")\n2 SEEK(1,2)', "2: INVALID COMPONENT"),
-        pytest.param('1 OPENW(1,"P1",200,8)\n2 PRN#(1,"A")\n3 SEEK(1,3)', "3: INVALID COMPONENT",
-                     marks=pytest.mark.covers("cpl.err.INVALID_COMPONENT")),
-        ('1 OPENW(1,"P1",200,8)\n2 PRN#(1,"A")\n3 SEEK(1,1,10)', "3: INVALID PARAMETER"),
-        ("1 A%=FILESIZE(0)", "1: INVALID FILE NUMBER"),
-        ('1 OPENR(1,"P1")\n2 A%=FILESIZE(1,3)', "2: INVALID PARAMETER"),
-        pytest.param('1 I%=ERASE("P234567890123456789012345678901")', "1: INVALID FILE NAME",
-                     marks=pytest.mark.covers("cpl.err.INVALID_FILE_NAME")),
-        ('1 OPENW(1,"..")', "1: INVALID FILE NAME"),
-        ('1 OPENW(1,"../P1")', "1: INVALID FILE NAME"),
-        ('1 OPENW(1,"OUT/P1")', "1: INVALID FILE NAME"),
-        ('1 OPENR(1,"LINK")', "1: INVALID FILE NAME"),
-        ('1 OPENR(1,"PIPE")', "1: INVALID FILE NAME"),
-        ('1 OPENR(1,"cpl.store")', "1: INVALID FILE NAME"),
-        ('1 OPENR(1,"A/P1")', "1: FILE CANNOT BE WRITTEN"),
-        pytest.param('1 DIM A$(1000)\n2 A$="' + "A" * 600 + '"\n3 OPENW(1,"P1")\n4 PRN#(1,A$,A$)',
-                     "4: BLOCK EXCEEDS 1024 BYTES", marks=pytest.mark.covers("cpl.err.BLOCK_EXCEEDS_1024")),
-        ('1 DIM A$(1000)\n2 A$="' + "A" * 600 + '"\n3 OPENW(1,"P1")\n4 PRN#(1,A$;)\n5 PRN#(1,A$)',
-         "5: BLOCK EXCEEDS 1024 BYTES"),
+        pytest.param(program, what, marks=pytest.mark.covers(*rows_of(program), *rows))
+        for program, what, *rows in REFUSED
     ],
-)  # fmt: skip
+)
 def test_file_commands_refuse(root: Root, program: str, what: str) -> None:
     outside = root.folder.parent / f"{root.folder.name}_outside"
     outside.mkdir()

@@ -87,6 +87,21 @@ REFUSED = [
     ("type.ARRAY DIM", "DIM A%(2,3)\nA%(1,4)=1", "INVALID FIELD LIMIT"),
     ("type.CHARACTER DIM err.INVALID_FIELD_LIMIT", "DIM A$(1025)", "INVALID FIELD LIMIT"),
     ("type.CHARACTER DIM err.INVALID_FIELD_LIMIT", "DIM A$(0)", "INVALID FIELD LIMIT"),
+    ("type.ARRAY DIM err.INVALID_FIELD_LIMIT", "DIM A(65537)", "INVALID FIELD LIMIT"),
+    ("type.ARRAY DIM err.INVALID_FIELD_LIMIT", "DIM A%(256,257)", "INVALID FIELD LIMIT"),
+    ("type.ARRAY DIM err.INVALID_FIELD_LIMIT", "DIM A%(0)", "INVALID FIELD LIMIT"),
+    ("type.ARRAY DIM err.INVALID_FIELD_LIMIT", "DIM A%(3,0)", "INVALID FIELD LIMIT"),
+    ("type.ARRAY DIM err.INVALID_FIELD_LIMIT", "DIM A$(3,1025)", "INVALID FIELD LIMIT"),
+    ("type.ARRAY DIM err.INVALID_FIELD_LIMIT", "DIM A$(1025,3)", "INVALID FIELD LIMIT"),
+    ("err.INVALID_VARIABLE type.ARRAY", "DIM A(3)\n#A=A(I%)", "INVALID VARIABLE"),
+    ("err.INVALID_VARIABLE type.ARRAY", "DIM A(3,3)\n#A=A(1,I%)", "INVALID VARIABLE"),
+    ("kw.OF CASE", "CASE 1", "'OF' is missing"),
+    ("kw.THEN IF", "IF 1=1", "'THEN' is missing"),
+    ("kw.TO FOR", "FOR I%=1", "'TO' is missing"),
+    ("BCD", "#A%=BCD(80000000)", "INVALID PARAMETER"),
+    ("ROUND", "#A%=ROUND(2147483648.0)", "the value is out of the range of its type"),
+    ("VAL", '#A%=VAL("2147483648")', "the value is out of the range of its type"),
+    ("VAL", '#A%=VAL("-2147483649")', "the value is out of the range of its type"),
     ("SQRT", "#A=SQRT(-1)", "INVALID PARAMETER"),
     ("TAN", "#A=TAN(90)", "INVALID PARAMETER"),
     ("BCD", "#A%=BCD(-1)", "INVALID PARAMETER"),
@@ -132,6 +147,18 @@ def test_a_program_that_the_manual_does_not_allow_is_refused_where_it_is_wrong(
     assert caught.value.what.startswith(what)
     if not what.startswith("a condition"):
         assert caught.value.position.line == program.count("\n") + 1
+
+
+@pytest.mark.covers("cpl.MID$.stmt", "cpl.MID$", "cpl.string.assign.fromfield")
+def test_a_part_of_a_text_is_written_over_by_as_many_characters_as_it_has() -> None:
+    run = Ran(
+        numbered(
+            'DIM A$(6) : DIM B$(6) : DIM C$(6)\nA$="ABCDEF" : B$=A$ : C$=A$ : D$=A$\nMID$(A$,2,2)="XYZ"\n'
+            'MID$(B$,5)="UVW" : MID$(C$,3,9)="1"\n#A?=A$="AXYDEF" : #B?=B$="ABCDUV" : #C?=C$="AB1DEF"\n'
+            '#D?=D$="AXYDEF" : MID$(A$,6,1)="" : #E?=A$="AXYDEF"'
+        )
+    )
+    assert [run[f"#{each}?"] for each in "ABCDE"] == [True] * 5  # what refers to a field sees what is written
 
 
 @pytest.fixture

@@ -11,6 +11,7 @@ import pytest
 
 from polycnc.errors import UsageError
 from polycnc.runner import read_keys
+from support.cpl_rows import rows_of
 from support.cpl_runs import Root
 from support.cpl_screens import Shown
 
@@ -50,54 +51,129 @@ def test_dsp_puts_numbers_into_formats_wherever_they_stand(tmp_path: Path) -> No
     assert shown[7] == " " * 4 + "XPOS   1.500 YPOS   2.500 MEAS.PROBE=TRUE NO.=      200"
 
 
+PLACE = "1: Invalid line or column number in CPL command"
+WRONG = "1: INVALID PARAMETER"
+NO_KEY = "1: the program waits for a key, and none is pressed"
+REFUSED = [
+    ('1 DSP(47,1,"A")', PLACE, "cpl.err.INVALID_LINE_COLUMN"),
+    ('1 DSP(0,1,"A")', PLACE, "cpl.err.INVALID_LINE_COLUMN"),
+    ('1 DSP(1,0,"A")', PLACE, "cpl.err.INVALID_LINE_COLUMN"),
+    ('1 DSP(1,80,"A")', PLACE, "cpl.err.INVALID_LINE_COLUMN"),
+    ('1 PRN(47,1,"A")', PLACE, "cpl.PRN"),
+    ('1 PRN(1,80,"A")', PLACE, "cpl.PRN"),
+    ('1 DSP(0.4,1,"A")', PLACE, "cpl.err.INVALID_LINE_COLUMN"),
+    ('1 DSP(1,1,"' + "A" * 78 + '")', "1: maximum string length exceeded", "cpl.err.MAX_STRING_LENGTH"),
+    ('1 DSP(1,1,"#.#",123.5)', "1: format not permitted", "cpl.err.FORMAT_NOT_PERMITTED"),
+    *(
+        (f"1 GWD({edges})", WRONG)
+        for edges in ("0,633,0,374", "5,5,0,374", "0,632,0,375", "-1,632,0,374", "0,632,-1,374", "0,632,7,7")
+    ),
+    *((f"1 MWD({edges})", WRONG) for edges in ("5,5,0,9", "5,4,0,9", "0,9,3,3", "0,9,4,3")),
+    *((f'1 GPR({place},"A")', WRONG) for place in ("633,0", "-1,0", "0,415", "0,-1")),
+    *((f'1 BMP({place},"A")', WRONG, "cpl.BMP") for place in ("633,0", "-1,0", "0,375", "0,-1")),
+    ('1 BMP(0,0,"A",9)', WRONG, "cpl.BMP"),
+    ('1 BMP(0,0,"A",-1)', WRONG, "cpl.BMP"),
+    (f'1 BMP(0,0,"{"m" * 71}")', "1: INVALID FILE NAME", "cpl.BMP"),
+    ("1 GMD(5)", WRONG),
+    ("1 GMD(-1)", WRONG),
+    ("1 COL(8)", WRONG),
+    ("1 COL(-1)", WRONG),
+    ("1 COL(,,,4)", WRONG),
+    ("1 COL(,,,2)", WRONG),
+    ("1 COL(,,,TRUE)", WRONG),
+    ("1 RGB(3,256,0,0)", WRONG),
+    ("1 RGB(3,0,-1,0)", WRONG),
+    ("1 RGB(8,0,0,0)", WRONG),
+    ("1 TFO(11)", WRONG),
+    ("1 TFO(-1)", WRONG),
+    ("1 TFO(,501)", WRONG, "cpl.TFO.size.hw"),
+    ("1 TFO(,501500)", WRONG, "cpl.TFO.size.hw"),
+    ("1 TFO(,500000)", WRONG, "cpl.TFO.size.hw"),
+    ("1 TFO(,,4)", WRONG),
+    ("1 TFO(,,,361)", WRONG),
+    ("1 LIN(1,2,3)", WRONG),
+    ("1 CIR(,,5)", WRONG),
+    ("1 CIR(5,5,0)", WRONG),
+    ("1 CIR(5,5,-1)", WRONG),
+    ("1 FIL(1,1,6,2)", WRONG),
+    ("1 FIL(1,1,-1,2)", WRONG),
+    ("1 FIL(1,1,0,8)", WRONG),
+    ("1 SFK(K%)", NO_KEY, "cpl.SFK"),
+    ("1 INP(X)", "1: INP WITHOUT PRN", "cpl.INP"),
+    ("1 WHILE INKEY<>13 DO\n2 A=1\n3 END", NO_KEY, "cpl.INKEY"),
+]
+
+
 @pytest.mark.parametrize(
     ("program", "what"),
     [
-        pytest.param(
-            '1 DSP(47,1,"A")',
-            "1: Invalid line or column number in CPL command",
-            marks=pytest.mark.covers("cpl.err.INVALID_LINE_COLUMN"),
-        ),
-        ('1 DSP(1,80,"A")', "1: Invalid line or column number in CPL command"),
-        ('1 DSP(0.4,1,"A")', "1: Invalid line or column number in CPL command"),
-        pytest.param(
-            '1 DSP(1,1,"' + "A" * 78 + '")',
-            "1: maximum string length exceeded",
-            marks=pytest.mark.covers("cpl.err.MAX_STRING_LENGTH"),
-        ),
-        pytest.param(
-            '1 DSP(1,1,"#.#",123.5)',
-            "1: format not permitted",
-            marks=pytest.mark.covers("cpl.err.FORMAT_NOT_PERMITTED"),
-        ),
-        *(
-            pytest.param(f"1 GWD({edges})", "1: INVALID PARAMETER", marks=pytest.mark.covers("cpl.GWD"))
-            for edges in (
-                "0,633,0,374",
-                "5,5,0,374",
-                "0,632,0,375",
-                "-1,632,0,374",
-                "0,632,-1,374",
-                "0,632,7,7",
-            )
-        ),
-        ("1 GMD(5)", "1: INVALID PARAMETER"),
-        ("1 COL(8)", "1: INVALID PARAMETER"),
-        ("1 COL(,,,4)", "1: INVALID PARAMETER"),
-        ("1 COL(,,,TRUE)", "1: INVALID PARAMETER"),
-        ("1 RGB(3,256,0,0)", "1: INVALID PARAMETER"),
-        ("1 TFO(11)", "1: INVALID PARAMETER"),
-        ("1 TFO(,501)", "1: INVALID PARAMETER"),
-        ("1 LIN(1,2,3)", "1: INVALID PARAMETER"),
-        ("1 CIR(,,5)", "1: INVALID PARAMETER"),
-        ("1 FIL(1,1,6,2)", "1: INVALID PARAMETER"),
-        ("1 SFK(K%)", "1: the program waits for a key, and none is pressed"),
-        ("1 INP(X)", "1: INP WITHOUT PRN"),
-        ("1 WHILE INKEY<>13 DO\n2 A=1\n3 END", "1: the program waits for a key, and none is pressed"),
+        pytest.param(program, what, marks=pytest.mark.covers(*rows_of(program.partition("(")[0]), *rows))
+        for program, what, *rows in REFUSED
     ],
 )
 def test_dialog_commands_refuse(tmp_path: Path, program: str, what: str) -> None:
     assert Root(tmp_path).error(program) == what
+
+
+@pytest.mark.covers(
+    "cpl.DSP", "cpl.dialog.screen", "cpl.GPR", "cpl.BMP", "cpl.TFO", "cpl.TFO.size.hw", "cpl.COL", "cpl.RGB", "cpl.GMD",
+    "cpl.GWD", "cpl.MWD", "cpl.LIN", "cpl.CIR", "cpl.FIL", "cpl.CLR", "cpl.err.MAX_STRING_LENGTH", "cpl.INKEY",
+    "cpl.err.INVALID_LINE_COLUMN",
+)  # fmt: skip
+def test_dialog_commands_take_the_last_that_is_allowed(tmp_path: Path) -> None:
+    """What lies at the borders of the window, and the last of fonts, sizes, cuts, colours, patterns and copy types."""
+    (tmp_path / "cplbmp").mkdir()
+    (tmp_path / f"cplbmp/{'m' * 70}.bmp").write_bytes(_bmp([[RED]]))
+    shown = Shown(
+        f'1 DSP(46,79,"AB") : DSP(1,1,"{"T" * 77}") : GPR(0,0,"LOW") : GPR(632,414,"HIGH") : COL(7,6,1)\n'
+        f'2 DSP(2,79,"C") : RGB(7,255,255,255) : RGB(0,0,0,1) : LIN(10,374,40,374) : GWD(0,632,0,374)\n'
+        f'3 BMP(632,374,"{"m" * 70}",8) : MWD(0,632,0,374) : CIR(100,100,9) : LIN(40,370) : GMD(4) : LIN(0,1,632,1)\n'
+        '4 GMD(0) : FIL(300,300,5,3,7) : TFO(10,500500,3,360) : GPR(5,6,"BIG") : TFO(5,9,0,90) : GPR(7,8,"FLAT")\n'
+        "5 #K%=INKEY : CLG : #L%=INKEY : DLF : #M%=INKEY",
+        tmp_path, "x", "y", finish=False,
+    )  # fmt: skip
+    assert [shown.globals[f"#{each}%"] for each in "KLM"] == [120, 0, 121]
+    assert shown.surface.tables[3][7] == (255, 255, 255)
+    shown = Shown(
+        '1 DSP(46,79,"AB") : DSP(2,79,"C") : GPR(632,414,"H") : COL(7) : LIN(10,374,40,374) : CIR(100,100,9)\n'
+        '2 LIN(40,370) : TFO(10,500500,3,360) : GPR(5,6,"BIG") : TFO(5,9,0,90) : GPR(7,8,"FLAT")',
+        tmp_path, finish=False,
+    )  # fmt: skip
+    assert (shown[46][78:], shown[2], shown.lines[0][78:]) == ("A", " " * 78 + "C", " ")
+    assert [tuple(each) for each in (text.font for text in shown.surface.texts[1:])] == [
+        (10, 500, 500, 3, 0), (5, 9, 0, 0, 0),
+    ]  # fmt: skip
+    # the line goes on from the last line, not from the circle; it begins in the top row
+    assert [shown.colour(x, y) for x, y in ((10, 374), (40, 374), (40, 372), (70, 235), (9, 374))] == [
+        7,
+        7,
+        7,
+        -1,
+        -1,
+    ]
+    corners = Shown("1 LIN(0,0,0,374) : LIN(632,374) : LIN(632,0) : LIN(0,0)", tmp_path)
+    assert [corners.colour(x, y) for x in (0, 632) for y in (0, 1, 373, 374)] == [1] * 8
+    cleared = Shown("1 LIN(10,374,40,374) : LIN(0,0,0,9) : LIN(632,3,632,5) : CLR", tmp_path)
+    assert int(cleared.surface.pixels.max()) == -1
+    box = "1 COL(3) : LIN(10,10,20,10) : LIN(20,20) : LIN(10,20) : LIN(10,10) : FIL(15,15,5,"
+    assert (Shown(box + "3)", tmp_path).colour(12, 12), Shown(box + "5,3)", tmp_path).colour(12, 12)) == (
+        3,
+        5,
+    )
+    assert (Shown(box + "5)", tmp_path).colour(9, 9), Shown(box + "5,3)", tmp_path).colour(9, 9)) == (5, -1)
+
+
+@pytest.mark.covers("cpl.SFK", "cpl.INP", "cpl.PRN")
+def test_softkeys_have_three_lines_of_nine_and_a_number_nine_digits(tmp_path: Path) -> None:
+    shown = Shown(
+        '1 SFK(K%,"A&B&C&D",,,,,,,"123456789X")\n2 #K%=K%', tmp_path, "ENTER", "SOFTKEY8", finish=False
+    )
+    assert shown.globals["#K%"] == 8
+    assert [shown[line].split()[0] for line in (43, 44, 45)] == ["A", "B", "C"]
+    assert shown[43].split()[-1] == "123456789"
+    assert shown[46] == ""
+    typed = '1 DLG : PRN(1,1,"N",#N%) : INP(#N%) : ENDDLG'
+    assert Shown(typed, tmp_path, *"1234567890", "ENTER").globals["#N%"] == 123456789
 
 
 # ---------------------------------------------------------------------- keys
@@ -118,7 +194,7 @@ def test_inkey_returns_the_codes_of_keys_one_by_one(tmp_path: Path) -> None:
     assert shown.globals["#L%"] == 0
 
 
-@pytest.mark.covers("cpl.DLF", "cpl.CLG")
+@pytest.mark.covers("cpl.DLF", "cpl.CLG", "cpl.INKEY")
 def test_inkey_sees_keys_only_while_the_window_is_in_front(tmp_path: Path) -> None:
     shown = Shown("1 CLG\n2 #A%=INKEY\n3 DLF\n4 #B%=INKEY", tmp_path, "x")
     assert (shown.globals["#A%"], shown.globals["#B%"]) == (0, 120)
@@ -303,6 +379,7 @@ def test_labels_of_a_sine_lie_beside_their_crosses(tmp_path: Path) -> None:
         label, digit = shown.surface.texts[2 * number : 2 * number + 2]
         assert label[:3] == (x + 16, y + 40, "pixel")
         assert digit[:3] == (x + 64, y + 40, str(number + 1))
+        assert shown.lines[45 - (y + 40) // 9][(x + 64) // 8] == str(number + 1)
 
 
 @pytest.mark.covers("cpl.GMD", *(f"cpl.GMD.type.{n}" for n in range(5)))
@@ -317,6 +394,12 @@ def test_line_types_draw_erase_and_toggle(tmp_path: Path) -> None:
         y: "".join("#" if shown.colour(x, y) == 1 else "." for x in range(10, 91)) for y in range(10, 61, 10)
     }
     assert rows[10] == "#" * 20 + "." * 31 + "#" * 30
+    assert [shown.colour(x, 10) for x in (29, 30, 60, 61)] == [
+        1,
+        -1,
+        -1,
+        1,
+    ]  # nothing is drawn there, not black
     assert rows[20] == "." * 81
     assert rows[30] == "." * 41 + "#" * 40
     assert rows[40] == ("########..#.." * 7)[:81]

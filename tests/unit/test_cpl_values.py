@@ -152,6 +152,7 @@ def test_a_word_that_stands_alone_is_an_assignment_without_its_sign() -> None:
     assert str(error).startswith("main.cpl:2:10: = MISSING [2167]\n    20 GOTO10\n")
     assert Ran("5 GOTO 10\n7 #A=1\n10 #B=2").run.globals == {"#B": 2.0, "#A": None}
     assert value("STEP%=3\nEND%=4\nTIME%=5\n#A=STEP%*END%*TIME%") == 60.0
+    assert value("GOTO10=7\nFOR1=2\nSIN3=4\nIFX=3\nAND2=5\n#A=GOTO10*FOR1+SIN3*IFX+AND2") == 31.0
 
 
 @pytest.mark.covers("cpl.var.local", "cpl.var.groups")
@@ -557,6 +558,7 @@ def test_words_without_a_function_are_reserved_all_the_same(word: str) -> None:
 def test_points_and_commas_are_text_within_strings() -> None:
     assert value('#A$="1,5.7:#@%?!;=" : #B$="(["', "#A$") == "1,5.7:#@%?!;="
     assert value("#A=.5+5.") == 5.5
+    assert value("GOTO .THERE:#A=1\n.THERE:#A=2") == 2.0
     assert failure("#A=1,5").what == "the instruction does not go on with ','"
     assert failure("#A=1 & 2").what == "'&' has no meaning here"
 

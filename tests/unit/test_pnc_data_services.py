@@ -368,6 +368,8 @@ def test_an_auxiliary_function_waits_until_the_plc_acknowledges_it(tmp_path: Pat
     assert [state for state, _ in seen] == [(0, 0), (1, 2), (0, 0)]
     assert seen[2][1] - seen[1][1] == pytest.approx(60, abs=2)
     assert living.read(40, 2) == [0]
+    living.start("N1 M27\nN2 X2=2\n", 3, channel=2)  # in the other channel: the first one waits for nothing
+    assert [living.glance(number, channel)[0] for number in (40, 87) for channel in (1, 2)] == [0, 1, 0, 2]
     living.pnc.close()
 
 

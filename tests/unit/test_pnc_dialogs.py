@@ -200,6 +200,7 @@ def test_a_drive_that_lags_is_in_the_list_with_its_time(panel: Panel) -> None:
     assert row[:2] == ("1856", "2")
     assert row[5].startswith("axis Y2: following error")
     assert row[4] != "(000)"
+    assert (row[4][0], len(row[4]), row[4][1:4].isdigit(), row[4][4]) == ("(", 5, True, ")")
     assert listed(panel)[:2] == ([1856], [2])
     assert panel.pnc.information(Tab.WARNINGS) == panel.pnc.information(Tab.MESSAGES) == []
 

@@ -78,7 +78,13 @@ def again(tmp_path: Path) -> Iterator[Two]:
 @pytest.mark.covers("cpl.MCOPS.6")
 @pytest.mark.covers("cpl.MCOPS")
 @pytest.mark.covers(
-    "cpl.MCOPS.3", "cpl.MCOPS.4", "cpl.ncs.0", "cpl.ncs.14", "cpl.MCODS.32.sav.2", "cpl.MCODS.32"
+    "cpl.MCOPS.3",
+    "cpl.MCOPS.4",
+    "cpl.ncs.0",
+    "cpl.ncs.14",
+    "cpl.MCODS.32.sav.2",
+    "cpl.MCODS.32",
+    "cpl.MCODS.32.elem.1",
 )
 @pytest.mark.parametrize(
     ("name", "start", "end", "code", "x2", "seen"),
@@ -242,7 +248,7 @@ def test_blocks_are_put_in_while_others_are_executed(two: Two) -> None:
     assert two.sav() is Sav.INACTIVE
 
 
-@pytest.mark.covers("cpl.MCOPS.4")
+@pytest.mark.covers("cpl.MCOPS.4", "cpl.MCOPS.4.code.4096")
 @pytest.mark.covers("cpl.ncs.26")
 @pytest.mark.covers("cpl.MCOPS")
 def test_a_buffer_that_is_full_takes_nothing(two: Two) -> None:
@@ -251,10 +257,20 @@ def test_a_buffer_that_is_full_takes_nothing(two: Two) -> None:
     block = f'MCOPS(4,2,"{"    " * 46}G1 F6000 X2=1",,,4128)'  # with its line feed 198 bytes
     size = 4 * 46 + 14
     fitting = 4096 // size
+    assert two.ask(f'MCOPS(4,2,"{" " * 4096}",,,4128)', f'MCOPS(4,2,"{" " * 9000}",,,4128)') == [26, 26]
     assert two.ask(*[block] * fitting, block, 'MCOPS(4,2,"X2=2",,,4128)') == [*fitting * [0], 26, 0]
     pnc.cycle_start(channel=2)
     pnc.advance(3000)
     assert two.x2() == 2
+    assert two.ask("MCOPS(5,2)") == [0]
+    pnc.advance(100)
+    longest = [f'MCOPS(4,2,"G1{" " * (size - 2)}",,,4128)' for size in (4096, 4095)]
+    assert two.ask(*longest) == [26, 0]
+    assert two.ask("MCOPS(5,2)") == [0]
+    pnc.advance(100)
+    assert two.ask(
+        f'MCOPS(4,2,"G1{" " * 4091}",,,4128)', 'MCOPS(4,2,"G1",,,4128)', 'MCOPS(4,2,"F",,,4128)'
+    ) == [0, 26, 0]
 
 
 @pytest.mark.covers("cpl.MCOPS.4")
@@ -352,12 +368,16 @@ def test_a_program_is_selected_again_unless_that_is_suppressed(again: Two, servi
     assert [again.pnc.variables(1)[name] for name in ("#E%", "#F%", "#B%")] == [0, 0, 1]
 
 
-@pytest.mark.covers("cpl.MCOPS.7", "cpl.MCOPS.5")
-@pytest.mark.covers("cpl.MCOPS")
+@pytest.mark.covers("cpl.MCOPS.7", "cpl.MCOPS.5", "cpl.MCOPS.8", "cpl.MCOPS.8.how.3", "cpl.MCOPS.8.where.3")
+@pytest.mark.covers("cpl.MCOPS", "cpl.ncs.18", "cpl.ncs.1", "cpl.MCOPS.6")
 @pytest.mark.covers("cpl.ncs.13", "cpl.sig.NC-I_3.0")
 def test_starts_and_modes_have_their_conditions(two: Two) -> None:
     two.pnc.select_program("PART", channel=2)
     assert two.ask("MCOPS(7,2,4)", "MCOPS(7,2,6)", "MCOPS(7,2,5)") == [13, 0, 0]
+    assert two.ask("MCOPS(5,2)", "MCOPS(7,2,4)", 'MCOPS(4,2,"G1 X2=1",,,32)', "MCOPS(7,2,5)") == [0, 0, 0, 13]
+    assert two.ask("MCOPS(5,2)", "MCOPS(7,2,5)", 'MCOPS(4,2,"PART")', "MCOPS(7,1,4)") == [0, 0, 0, 13]
+    assert two.ask("MCOPS(8,2,0,1)", "MCOPS(8,2,1,0)", "MCOPS(8,2,4,1)", "MCOPS(8,2,3,3)") == [18, 18, 18, 0]
+    assert two.ask("MCOPS(8,-1,1,1)", "MCOPS(7,0,5)", "MCOPS(5,-2)", "MCOPS(6,3)") == [1, 1, 1, 1]
     pnc = two.pnc
     group, bit = MODE_BY_PLC
     assert (group, bit) == (0, 3 * 8)  # NC-I 3.0: byte 3 and bit 0 of the inputs of the channel
@@ -398,13 +418,30 @@ def test_axes_are_moved_by_hand_where_the_mode_fits(two: Two, mode: int, code: i
         assert control.manual.referenced["X2"]
 
 
-@pytest.mark.covers("cpl.MCOPS.1", "cpl.ncs.102")
+@pytest.mark.covers(
+    "cpl.MCOPS.4", "cpl.MCOPS.4.code.32", "cpl.MCOPS.4.code.2", "cpl.ncs.18", "cpl.ncs.6", "cpl.MCOPS"
+)
+def test_names_have_100_characters_and_blocks_511(two: Two) -> None:
+    names = ["p" * 100, "p" * 101, ""]
+    assert two.ask(*(f'MCOPS(4,2,"{name}",,,2)' for name in names)) == [6, 18, 18]
+    assert two.ask("MCOPS(5,2)", "MCOPS(7,2,4)") == [0, 0]
+    blocks = [f"G1 X2=1.{'0' * (length - 8)}" for length in (512, 511)]
+    assert two.ask(*(f'MCOPS(4,2,"{block}",,,32)' for block in blocks)) == [18, 0]
+
+
+@pytest.mark.covers("cpl.MCOPS.1", "cpl.ncs.102", "cpl.ncs.8", "cpl.ncs.10", "cpl.ncs.3", "cpl.ncs.18")
 @pytest.mark.covers("cpl.MCOPS")
 def test_what_is_not_simulated_is_refused(two: Two) -> None:
     two.pnc.select_program("LONG", channel=2)
     two.pnc.cycle_start(channel=2)
     assert two.ask("MCOPS(1,2)", "MCOPS(10,2)") == [102, 102]
     assert two.pnc.run_state(2) is RunState.ACTIVE
+    assert two.ask("MCOPS(5,2)", "MCOPS(1,2)") == [0, 3]
+    two.pnc.advance(500)
+    assert two.ask("MCOPS(1,2)", "MCOPS(1,3)", "MCOPS(1,-2)", "MCOPS(1,2,0)") == [10, 1, 1, 18]
+    two.pnc.select_program("LONG", channel=2)
+    two.pnc.control.select_mode(two.pnc.control.mode.__class__.JOG, channel=1)
+    assert two.ask("MCOPS(1,2)") == [8]
 
 
 # ---------------------------------------------------------------------- what is waited for
@@ -441,6 +478,7 @@ def test_a_channel_that_waits_for_data_shows_it(two: Two) -> None:
     "cpl.MCODS.32.ipo.1",
     "cpl.MCODS.32.ipo.2",
     "cpl.MCODS.32.ipo.3",
+    "cpl.MCODS.32.elem.2",
     "cpl.MCODS.87.bit.5",
     "cpl.MCODS.32",
     "cpl.MCODS.87",

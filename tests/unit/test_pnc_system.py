@@ -384,6 +384,7 @@ def test_drives_tell_their_parameters(cell: Cell) -> None:
     blocks = 'N1 G1 X1.2345 Y-3 F900\n2 WAIT\n10 POSITION%=SCS(1,"S",51,ERROR%)\n11 Q%=SCS("Y","S",47)'
     assert cell.values(blocks, "POSITION%", "ERROR%", "Q%") == [12345, 0, -30000]
     assert cell.error('1 A=SCS(1,"S",17)') == "1: INVALID PARAMETER"
+    assert cell.error('1 A=SCS(1,"S",17,E%)') == "1: INVALID PARAMETER"
     assert cell.error('1 A=SCS(1,"X",51)') == "1: INVALID PARAMETER"
     assert cell.error('1 A=SCS(5,"S",51)') == "1: INVALID PARAMETER"
     assert cell.error('1 A=SCS(1,"S",999)') == "1: INVALID PARAMETER"

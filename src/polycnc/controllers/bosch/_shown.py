@@ -218,10 +218,7 @@ class Shown:
         shown.reselection = self._channels.reselects()
         shown.auxiliary_waits = self._channels.functions_wait(number)
         if run is None:
-            shown.coordinates = [
-                Coordinate(self._axes.logical_name(number, each), (each,))
-                for each in self._axes.channels[number]
-            ]
+            shown.coordinates = _Coordinates(lambda: self._at_rest(number))
             return
         row = run.machine.state.paths.row[run.path]
         words, _ = self._block(run, number)
@@ -298,6 +295,16 @@ class Shown:
         for name, place in _GENERAL_TOOL.items():
             setattr(shown.tool, name, values.get((general, place), 0.0))
         shown.tool.kind = int(values.get((general, TOOL_KIND), 0.0))
+
+    def _at_rest(self, number: int) -> list[Coordinate]:
+        """Return the coordinates of a channel that has executed nothing yet: those of its axes."""
+        found = []
+        for each in self._axes.channels[number]:
+            axis, name = self.image.axes[each], self._axes.logical_name(number, each)
+            unit = Unit.METRIC if axis.kind == "linear" else Unit.DEGREE
+            at = axis.setpoint
+            found.append(Coordinate(name, (each,), False, unit, at, at, axis.actual, at, at))
+        return found
 
     def _coordinates(self, run: ProgramRun, number: int) -> list[Coordinate]:
         axes, state = self._axes, run.machine.state

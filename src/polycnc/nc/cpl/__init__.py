@@ -7,6 +7,7 @@ from polycnc.nc.cpl._fields import Field
 from polycnc.nc.cpl._formats import default_format, groups, number_in
 from polycnc.nc.cpl._function import Function
 from polycnc.nc.cpl._functions import GROUPS as FUNCTION_GROUPS
+from polycnc.nc.cpl._functions import MOST_OF_MMC
 from polycnc.nc.cpl._host import (
     BLOCKED,
     OMITTED,
@@ -37,6 +38,7 @@ __all__ = [
     "FUNCTION_GROUPS",
     "KIND_NAMES",
     "LEXICON",
+    "MOST_OF_MMC",
     "OMITTED",
     "PAUSE",
     "RESERVED",

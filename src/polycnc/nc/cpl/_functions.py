@@ -10,6 +10,8 @@ from polycnc.nc.cpl import _numbers, _strings
 from polycnc.nc.cpl._function import Function, functions_of
 
 _F = Function
+MOST_OF_MMC = 20
+"""How many variables MMC shows."""
 POSITIONS = (
     _F("AXO(axis[,type])", "D", "Return the last G92 shift of a coordinate."),
     _F("CPOS(axis[,type])", "D", "Return the last programmed position of a coordinate."),
@@ -62,7 +64,7 @@ SYSTEM = (
        results=(2, 3), waiting=True),
     _F("MCOPS(function,channel[,P1[,P2[,P3[,P4]]]])", "I", "Have a channel do something.", waiting=True),
     _F("MMC(variable{,variable})", "I", "Show variables to a client, and wait until it has them.",
-       most=20, results=(0,), listed=True, waiting=True, named=True),
+       most=MOST_OF_MMC, results=(0,), listed=True, waiting=True, named=True),
 )  # fmt: skip
 FILES = (
     _F("OPENW(number,name[,length][,remark][,record length])", "I", "Open a file to write at its end.", command=True),

@@ -153,10 +153,8 @@ def dimension(old: object, size: int) -> CharacterField:
     """Return a character field of a size; one that has this size already is kept.
 
     Raises:
-        Fault: The size is outside 1 to 1024, or another one is in force.
+        Fault: Another size is in force.
     """
-    if not 1 <= size <= LONGEST:
-        raise Fault(INVALID_FIELD_LIMIT, f"a character field has 1 to {LONGEST} characters")
     if not isinstance(old, CharacterField):
         return CharacterField(size)
     if old.size != size:

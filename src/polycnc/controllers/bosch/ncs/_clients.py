@@ -9,9 +9,7 @@ from typing import TypeAlias
 
 from polycnc.controllers.bosch.ncs._buffers import INVALID_PARAMETER, held
 from polycnc.errors import shown
-from polycnc.nc.cpl import BLOCKED, Box, CharacterField, Fault, Field
-
-MOST = 20
+from polycnc.nc.cpl import BLOCKED, MOST_OF_MMC, Box, CharacterField, Fault, Field
 
 
 class MmcResult(IntEnum):
@@ -58,8 +56,8 @@ class Mmc:
         Raises:
             Fault: The arguments are not 1 to 20 variables.
         """
-        if open or not 1 <= len(variables) <= MOST:
-            raise Fault(INVALID_PARAMETER, f"MMC takes 1 to {MOST} variables")
+        if open or not 1 <= len(variables) <= MOST_OF_MMC:
+            raise Fault(INVALID_PARAMETER, f"MMC takes 1 to {MOST_OF_MMC} variables")
         if self._clients.client is None:
             self._under_way = None
             return int(MmcResult.NO_CLIENT)

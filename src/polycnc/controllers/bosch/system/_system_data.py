@@ -116,7 +116,7 @@ class SystemData:
             Fault: There are none of this group and indices.
         """
         value = _find(_SD, self, arguments, "SD")
-        return math.floor(value + 0.5)
+        return math.floor(round(value, 9) + 0.5)  # 1.5 inch in mm and back is a bit less
 
     def sdr(self, *arguments: object) -> float:
         """Return system data as REAL.
