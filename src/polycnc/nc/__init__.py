@@ -2,7 +2,7 @@
 
 from polycnc.nc.blocks._channel_state import ChannelState, of_another_channel
 from polycnc.nc.blocks._events import Event, EventRun, run_word
-from polycnc.nc.blocks._messages import Message
+from polycnc.nc.blocks._messages import NOT_EXECUTED, Message
 from polycnc.nc.blocks._moves import Stop
 from polycnc.nc.blocks._probe import Probe
 from polycnc.nc.blocks._tip import TIPS
@@ -56,6 +56,7 @@ __all__ = [
     "DIALECTS",
     "LINE_MASK",
     "NAMED_END",
+    "NOT_EXECUTED",
     "ROOM_BYTES",
     "TIPS",
     "Action",

@@ -14,7 +14,7 @@ import numpy.typing as npt
 from polycnc.errors import SourcePosition
 from polycnc.kernel import RAPID, WAIT, WAIT_EVENT
 from polycnc.machine import MachineConfig
-from polycnc.nc import NAMED_END, Channel, Dialect, MAction, ProgramText, line_of
+from polycnc.nc import NAMED_END, NOT_EXECUTED, Channel, Dialect, MAction, ProgramText, line_of
 
 Floats = npt.NDArray[np.float64]
 _TURNS = {
@@ -209,9 +209,13 @@ def empty_remark(program: ProgramText) -> Remark | None:
 
 
 def unread_remarks(channel: Channel, program: ProgramText) -> list[Remark]:
-    """Return what to say of a program that has been prepared, and of which a part was not read."""
-    lines = [each.line for each in channel.messages.all() if each.text == NAMED_END]
-    return [Remark("unread", NAMED_END, program.line_position(line)) for line in lines]
+    """Return what to say of a program that has been prepared, and of which a part was not read or not executed."""
+    found = [(_key_of(each.text), each) for each in channel.messages.all()]
+    return [Remark(key, each.text, program.line_position(each.line)) for key, each in found if key]
+
+
+def _key_of(message: str) -> str:
+    return "unread" if message == NAMED_END else "not_executed" if message.endswith(NOT_EXECUTED) else ""
 
 
 def times_remark(config: MachineConfig, dialect: Dialect, words: Mapping[str, int]) -> str:

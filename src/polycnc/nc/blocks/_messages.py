@@ -7,6 +7,8 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import TypeAlias
 
+NOT_EXECUTED = ", which is an alarm where it is executed"
+"""The end of the message on a statement that has not been executed, and would be an alarm."""
 _SHOWN = "MSG: "
 
 
