@@ -338,9 +338,8 @@ class MacroSource:
         code = self._code
         found = code.shape.find(number, offset)
         if found is None:
-            raise MacroError(
-                f"there is no block N{number} in this program", "Check the block number.", "PS0128"
-            )
+            hint = "Check the block number; a variable without a value counts as 0."
+            raise MacroError(f"there is no block N{number} in this program", hint, "PS0128")
         return code.places[found]
 
     # ------------------------------------------------------------------ errors
