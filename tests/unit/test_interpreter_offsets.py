@@ -115,6 +115,10 @@ def test_machine_coordinates_are_absolute_with_g91_too() -> None:
     assert moves("G91 G0 X5\nG53 X2\n") == ["rapid X5 stop", "rapid X2 stop"]
 
 
+def test_machine_coordinates_without_an_axis_are_no_move() -> None:
+    assert moves("G1 G53 G90 G40\nG53 F60 X2\n") == ["line X2 F60"]
+
+
 def test_machine_coordinates_of_an_axis_that_turns_over() -> None:
     assert moves("G0 C10\nG53 C350\n", config=FIVE) == ["rapid C10 stop", "rapid C-10 stop"]
 

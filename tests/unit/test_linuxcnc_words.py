@@ -36,6 +36,11 @@ def test_where_it_goes(program: str, end: dict[str, float], tmp_path: Path) -> N
 
 
 REFUSALS = [
+    ("M3 $1 S100", "there is no spindle 1"),
+    ("M3 $-2 S100", "there is no spindle -2"),
+    ("M3 $0 S100 $[1-1]", r"\$ without the number of a spindle"),
+    ("$10=5", r"'\$' is not allowed in a block"),
+    ("#1 = SQRT(2)", r"square brackets"),
     ("G10 L20 P1 X3 R5", "G10 L20 with R"),
     ("G10 L3 P1 X3", "L3 is not there"),
     ("G10 P1 X3", "without L and P"),
@@ -139,6 +144,13 @@ MODES = [
 def test_modes_that_are_kept_come_back(program: str, end: tuple[float, float, float], tmp_path: Path) -> None:
     found = run(tmp_path, program).end_position_mm
     assert tuple(found.values()) == pytest.approx(end, abs=1e-9)
+
+
+def test_the_only_spindle_may_be_named(tmp_path: Path) -> None:
+    programs = "M3 $0 S100\nG1 X2 F100 (5 $7)\nM5 $-1", "M3 S100\nG1 X2 F100\nM5"
+    named, plain = ([(each.word, each.line) for each in run(tmp_path, text).events] for text in programs)
+    assert named == plain
+    assert len(named) == 3
 
 
 def test_functions_have_their_words_in_their_events(tmp_path: Path) -> None:

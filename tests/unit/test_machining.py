@@ -129,6 +129,19 @@ def test_block_numbers_and_semicolons_do_not_hide_a_remark() -> None:
 # --- remarks of check
 
 
+@pytest.mark.parametrize(("code", "said"), [("G90", "U and W"), ("G94", "feed per minute is G98")])
+def test_codes_of_another_system_for_lathes_are_remarked(code: str, said: str, tmp_path: Path) -> None:
+    path = tmp_path / "part.nc"
+    path.write_text(f"O1\nT0101\n{code} G40\nG97 S500 M3\nG0 X20. Z2.\n{code} X18. Z-5. F.1\nX17.\nM30\n")
+    report = inspect(path, dialect="fanuc-lathe")
+    assert [(each.key, each.position.line) for each in report.remarks if said in each.text] == [
+        ("code_system", 3)
+    ]
+    path.write_text("O1\nT0101\nG95\nM30\n")
+    (error,) = inspect(path, dialect="fanuc-lathe").errors
+    assert error.hint == "The dialect is G code system A: feed per revolution is G99."
+
+
 def test_cutting_with_the_spindle_at_rest_or_without_a_tool() -> None:
     cut = "G0 X5\nG1 Z-1 F100\nX9\n"
     assert remarks(cut) == [("spindle_off", 2, 2), ("no_tool", 2, 2)]

@@ -620,6 +620,38 @@ def test_a_wrong_program_is_refused_with_the_error_in_its_first_line(path: Path)
     assert made.error.hint
 
 
+NEVER = [
+    "GOTO 9",
+    "GOTO 20",
+    "#0=1",
+    "#1000=#2",
+    "#2=#1000",
+    "X5 Y#1000",
+    "WHILE[#1000 EQ 1]DO1",
+    "END2",
+    "DO3",
+]
+
+
+def test_what_cannot_be_executed_is_an_alarm_only_where_it_is_executed() -> None:
+    *alone, loop, end, unended = NEVER
+    text = ["GOTO 30", *alone, loop, "N20 X3", "END1", end, "N30 #100=7", "GOTO 40", unended, "N40 #101=8"]
+    made, variables = run("\n".join(text))
+    assert made.error is None, str(made.error)
+    assert (variables.get(100), variables.get(101)) == (7.0, 8.0)
+    found = {message.line: message.text for message in made.channel.messages.all()}
+    assert sorted(found) == [2, 3, 4, 5, 11, 14]  # each text once, #1000 where it stands first
+    assert found[2] == "there is no block N9 in this program, which is an alarm where it is executed"
+
+
+@pytest.mark.parametrize("line", [*NEVER[:6], NEVER[6] + "\nN20\nEND1", *NEVER[7:]])
+def test_what_cannot_be_executed_leaves_what_was_executed_before_it(line: str) -> None:
+    made, variables = run(f"#100=7\nIF[#100 EQ 6] THEN #100=8\n{line}\n#101=1\nM30\n")
+    assert made.error is not None
+    assert made.error.position is not None
+    assert (made.error.position.line, variables.get(100), variables.get(101)) == (3, 7.0, None)
+
+
 def test_program_and_block_number_are_those_of_the_program_that_runs() -> None:
     made, variables = run(
         "O1234\nN5 G0X2\nG0Y3\n#100=#4114\nN20 #101=#4114\n#102=#4114\nG65 P57\n#106=#4114\n#107=#4115\n"

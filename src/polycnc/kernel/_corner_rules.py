@@ -19,9 +19,8 @@ from polycnc.kernel._segments import LINE, Floats, Segments
 AS_AXES_ALLOW = 0
 BY_DEVIATION = 1  # acceleration: what the axes allow in the direction of the turn
 BY_SQUARE_CORNER = 2  # acceleration: that of both moves; a move also bounds the radius by half its length
-BY_SHARE = (
-    3  # a part of what each axis has in a cycle, which the lines beside the corner do without all along
-)
+# A part of what each axis has in a cycle, which the lines beside the corner do without all along.
+BY_SHARE = 3
 
 REVERSAL = 1e-6  # of 1 + cosine; a sharper corner is a stop
 STRAIGHT_ON = 1e-12  # of 1 - s; a smaller turn is none

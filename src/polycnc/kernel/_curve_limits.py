@@ -35,9 +35,8 @@ from polycnc.kernel._segments import (
 CENTRIPETAL_SHARE = math.sqrt(0.75)  # highest part that the curvature of an arc may use
 OVERLAP_SHARE = 0.5  # of its acceleration has a segment that overlaps with another
 OVERLAP_BEND_SHARE = 0.95  # of an axis' acceleration may be what an OVERLAP changes its speed by
-EVENLY = (
-    0.05  # of what it could has a free OVERLAP, whose speed goes evenly from that of one motion to the other
-)
+# Of what it could has a free OVERLAP, whose speed goes evenly from that of one motion to the other.
+EVENLY = 0.05
 BRAKED_PART = 0.5  # of its speed at its start, above which an OVERLAP that gets faster is gone through
 LAST_ARC_SHARE = 0.5  # of its acceleration has an arc that may go on, as if turning took CENTRIPETAL_SHARE
 

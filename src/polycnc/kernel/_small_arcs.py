@@ -18,9 +18,8 @@ from polycnc.kernel._segments import RAPID, STOP, WITH_SPINDLE, Floats, Segments
 
 NOT_SMALL = -2
 CORNERS = 3  # around each half of an arc
-PART = 1.0 / (
-    4.0 * CORNERS
-)  # of the arc, from its start to the first of them and from there to where that touches
+# Of the arc, from its start to the first of them and from there to where that touches.
+PART = 1.0 / (4.0 * CORNERS)
 
 
 @apart

@@ -2,7 +2,7 @@
 
 from polycnc.nc.blocks._channel_state import ChannelState, of_another_channel
 from polycnc.nc.blocks._events import Event, EventRun, run_word
-from polycnc.nc.blocks._messages import Message
+from polycnc.nc.blocks._messages import CODE_SYSTEM, NOT_EXECUTED, Message
 from polycnc.nc.blocks._moves import Stop
 from polycnc.nc.blocks._probe import Probe
 from polycnc.nc.blocks._tip import TIPS
@@ -51,11 +51,13 @@ from polycnc.nc.text._scan_plain import Block, Word, scan_block
 
 __all__ = [
     "CHANNEL_CLASSES",
+    "CODE_SYSTEM",
     "CONTEXT_SHIFT",
     "DEFAULT_DIALECT",
     "DIALECTS",
     "LINE_MASK",
     "NAMED_END",
+    "NOT_EXECUTED",
     "ROOM_BYTES",
     "TIPS",
     "Action",

@@ -14,13 +14,15 @@ import numpy.typing as npt
 from polycnc.errors import SourcePosition
 from polycnc.kernel import RAPID, WAIT, WAIT_EVENT
 from polycnc.machine import MachineConfig
-from polycnc.nc import NAMED_END, Channel, Dialect, MAction, ProgramText, line_of
+from polycnc.nc import CODE_SYSTEM, NAMED_END, NOT_EXECUTED, Channel, Dialect, MAction, ProgramText, line_of
 
 Floats = npt.NDArray[np.float64]
 _TURNS = {
     MAction.SPINDLE_CW: True, MAction.SPINDLE_CCW: True, MAction.SPINDLE_STOP: False, MAction.SPINDLE_ORIENT: False,
 }  # fmt: skip
 _ACROSS = "XY"
+_SEEN_BY_CHECK = ((NAMED_END, "unread"), (NOT_EXECUTED, "not_executed"), (CODE_SYSTEM, "code_system"))
+"""Endings of messages that are remarks too, and their keys."""
 _SOMETHING = re.compile(rb"[^% \t\r\n\0]")
 
 
@@ -209,9 +211,13 @@ def empty_remark(program: ProgramText) -> Remark | None:
 
 
 def unread_remarks(channel: Channel, program: ProgramText) -> list[Remark]:
-    """Return what to say of a program that has been prepared, and of which a part was not read."""
-    lines = [each.line for each in channel.messages.all() if each.text == NAMED_END]
-    return [Remark("unread", NAMED_END, program.line_position(line)) for line in lines]
+    """Return what to say of a program that has been prepared, and of which a part was not read or not executed."""
+    found = [(_key_of(each.text), each) for each in channel.messages.all()]
+    return [Remark(key, each.text, program.line_position(each.line)) for key, each in found if key]
+
+
+def _key_of(message: str) -> str:
+    return next((key for ending, key in _SEEN_BY_CHECK if message.endswith(ending)), "")
 
 
 def times_remark(config: MachineConfig, dialect: Dialect, words: Mapping[str, int]) -> str:

@@ -94,7 +94,7 @@ def _rotation(block: BlockContext, g: GWord) -> Rotation:
         name = block.after.axis_names[wrong[0]]
         raise block.problem(
             f"axis {name} is not in the plane that G{g.code} turns",
-            "Select another plane before, or take the word out.",
+            "Select another plane before, or remove the word.",
             block.words.first(name),
         )
     modal = block.after.modal

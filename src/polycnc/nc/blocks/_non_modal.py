@@ -233,5 +233,7 @@ def move_in_machine_coordinates(block: BlockContext, g: GWord) -> list[Line]:
         raise block.problem(f"G{g.code} goes with G0 or G1 only", "Write G0 or G1 in this block.", g.word)
     if not block.dialect.machine_coordinates_in_g91 and not block.after.modal.whole[ABSOLUTE]:
         raise block.problem(f"G{g.code} with incremental positions (G91)", "Select G90 first.", g.word)
-    end = motion.target(block, motion.axis_words(block), machine_coordinates=True)
+    if not (words := motion.axis_words(block)):
+        return []
+    end = motion.target(block, words, machine_coordinates=True)
     return [motion.line(block, end, bool(in_force == MOTION_RAPID))]

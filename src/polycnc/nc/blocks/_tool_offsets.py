@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from polycnc.errors import ProgramError
 from polycnc.machine import ToolConfig
 from polycnc.nc.blocks._block import BlockContext
 from polycnc.nc.blocks._channel_state import ChannelState
@@ -23,15 +24,18 @@ REFERENCE_SYSTEM = "G59.3"
 """The work offset whose zero is a known point of the fixture. Source: LinuxCNC G-code manual, "G10 L11"."""
 
 
+def _no_tool(block: BlockContext, tool: int, letters: str) -> ProgramError:
+    hint = f"Add it to the machine file, like {tool} = {{length_mm = 0, radius_mm = 3}} in [tools]."
+    return block.problem(f"tool {tool} is not in the tool table", hint, block.words.first(*letters))
+
+
 def tool_data(block: BlockContext, tool: int) -> ToolConfig:
     """Return the data of a tool, zeros with a message if there are none; tool 0 is no tool."""
     tools = block.after.machine.tools
     if block.after.tables.has_tool(tool):
         return block.after.tables.tool(tool)
     if tool and tools and "unknown tools" in block.dialect.refuses:
-        raise block.problem(
-            f"tool {tool} is not in the tool table", "Add it to the machine file.", block.words.first(*"HDQT")
-        )
+        raise _no_tool(block, tool, "HDQT")
     if tool and not tools:
         block.note("the machine has no tool table: lengths and radii of all tools are 0 mm")
     elif tool:
@@ -118,9 +122,7 @@ def set_tool(block: BlockContext, g: GWord, table: int, number: int) -> None:
     """
     state, tables = block.after, block.after.tables
     if not tables.has_tool(number):
-        raise block.problem(
-            f"tool {number} is not in the tool table", "Add it to the machine file.", block.words.first("P")
-        )
+        raise _no_tool(block, number, "P")
     for letter in "IJ":
         if word := block.words.take(letter):
             raise block.problem(

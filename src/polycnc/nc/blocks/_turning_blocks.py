@@ -10,13 +10,20 @@ from polycnc.nc.blocks import _limits as limits
 from polycnc.nc.blocks import _motion as motion
 from polycnc.nc.blocks import _turning_moves as turns
 from polycnc.nc.blocks._block import BlockContext
+from polycnc.nc.blocks._messages import CODE_SYSTEM
 from polycnc.nc.blocks._moves import Line, Point, QueueItem
 from polycnc.nc.blocks._synchronized import SYNCHRONIZED
 from polycnc.nc.blocks._synchronized import moves as synchronized
 from polycnc.nc.blocks._turning import MOST_PASSES, SAME_MM, Step, TurningError, box, exchanged
 from polycnc.nc.blocks._words import GWord
-from polycnc.nc.modal._actions import Family
+from polycnc.nc.modal._actions import Action, Family, Group
 from polycnc.nc.modal._modal import MOTION, MOTION_LINEAR
+
+_MODES = {
+    Action.TURN_CYCLE: "X and Z are absolute anyway, U and W are incremental",
+    Action.FACE_CYCLE: "feed per minute is G98, feed per revolution G99",
+}
+"""What other code systems mean by the codes of cycles, as it is said here."""
 
 
 def begin(block: BlockContext, g: GWord) -> None:
@@ -41,6 +48,7 @@ def moves(block: BlockContext) -> list[QueueItem]:
     taper = turns.length(block, "R") if taper_word is not None else None
     values = motion.axis_words(block)
     if not values and taper is None:
+        _remark_system(block)
         return []
     turns.refuse_compensation(block)
     end = motion.target(block, values)
@@ -69,6 +77,14 @@ def moves(block: BlockContext) -> list[QueueItem]:
     except TurningError as error:
         raise block.problem(error.what, error.hint, block.move_word) from None
     return list(turns.items(block, steps, end))
+
+
+def _remark_system(block: BlockContext) -> None:
+    """Tell of a cycle that is begun without a position: programs of another code system mean a mode by its code."""
+    g = block.words.g.get(Group.MOTION)
+    instead = None if g is None else _MODES.get(g.action)
+    if g is not None and instead:
+        block.note(f"G{g.code} without X and Z begins a cutting cycle ({instead}){CODE_SYSTEM}")
 
 
 def _changing_thread(block: BlockContext, end: Point) -> Iterator[Line]:

@@ -108,14 +108,14 @@ def refuse_unused(block: BlockContext) -> None:
         elif of_another_channel(name) in block.after.axis_names:
             raise block.problem(
                 f"axis '{name}' belongs to another channel",
-                "Take the word out, or execute the program in that channel.",
+                "Remove the word, or execute the program in that channel.",
                 word,
             )
         elif word.letter in _AXIS_LETTERS:
             names = ", ".join(block.after.axis_names)
             raise block.problem(
                 f"there is no axis '{name}' on machine '{block.after.machine.name}'",
-                f"Its axes are {names}; take the word out, or choose another machine.",
+                f"Its axes are {names}; remove the word, or choose another machine.",
                 word,
             )
         elif name in _BELONGS_TO:

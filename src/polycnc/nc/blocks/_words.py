@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from functools import partial
 
 from polycnc.errors import ProgramError
-from polycnc.nc.dialect._dialect import Dialect
+from polycnc.nc.dialect._dialect import DIALECTS, Dialect, load_dialect
 from polycnc.nc.modal._actions import Action, Group, MAction
 from polycnc.nc.text._program import ProgramText
 from polycnc.nc.text._scan_plain import Block, Word
@@ -22,8 +22,12 @@ NUMBERS = "NO:"
 MOST_WORDS = 1000
 """Words of a block: far more than any control reads. A file of one line would take hours otherwise."""
 _OF_MOVES = range(40, 50)  # offsets, after which axis words are still a move
-_NOT_YET = "What it does would be left out: take it out, or post the program without it."
-_OTHER_DIALECT = "Remove it, or name the dialect of the control that the program is for."
+_NOT_YET = (
+    "What it does would be left out: post the program without it, or remove it if the part does not need it."
+)
+_CYCLE_OF_A = 90.0
+_SYSTEM_A = {91.0: "U and W are incremental", 95.0: "feed per revolution is G99"}
+"""What codes of other code systems for lathes are in system A, which has a cycle for their absolute positions."""
 _REMARKS = re.compile(rb"\([^)\r\n]*\)")
 _COOLANT_ON = (MAction.COOLANT_MIST, MAction.COOLANT_FLOOD)
 _BOTH_COOLANTS = set(_COOLANT_ON)
@@ -122,6 +126,22 @@ class BlockWords:
                 yield letter, word
 
 
+def _other_dialects(word: Word, own: Dialect) -> str:
+    """Return what to do with a code that the dialect does not know; it names the shipped dialects that carry it out."""
+    if word.letter == "G" and word.value in _SYSTEM_A and own.g_action(_CYCLE_OF_A) is Action.TURN_CYCLE:
+        return f"The dialect is G code system A: {_SYSTEM_A[word.value]}."
+    having = []
+    for name in DIALECTS:
+        dialect = load_dialect(name)
+        if word.letter == "G":
+            known = dialect.g_action(word.value) not in (None, Action.UNSUPPORTED)
+        else:
+            known = dialect.m_action(int(word.value)) not in (None, MAction.UNSUPPORTED)
+        having += [name] * known
+    having_it = f" ({', '.join(having)} {'has' if len(having) == 1 else 'have'} it)" if having else ""
+    return f"Remove it, or name the dialect of the control that the program is for{having_it}."
+
+
 def code_text(value: float) -> str:
     """Return a number as it is usually written in a program: 1, 54, 5.1, 12000."""
     return f"{value:.0f}" if value.is_integer() and abs(value) < 1e16 else f"{value:.10g}"
@@ -158,7 +178,11 @@ class WordSorter:
         action = self._codes.get(word.value) or self._dialect.g_action(word.value)
         code = code_text(word.value)
         if action is None:
-            raise fail(f"G{code} is not known in dialect '{self._dialect.name}'", _OTHER_DIALECT, word)
+            raise fail(
+                f"G{code} is not known in dialect '{self._dialect.name}'",
+                _other_dialects(word, self._dialect),
+                word,
+            )
         group = action.group
         entry = GWord(word, code, action, action.sets or 0)
         if group is Group.IGNORED:
@@ -190,7 +214,11 @@ class WordSorter:
         code = int(word.value)
         action = self._dialect.m_action(code)
         if action is None:
-            raise fail(f"M{code} is not known in dialect '{self._dialect.name}'", _OTHER_DIALECT, word)
+            raise fail(
+                f"M{code} is not known in dialect '{self._dialect.name}'",
+                _other_dialects(word, self._dialect),
+                word,
+            )
         if action is MAction.UNSUPPORTED:
             raise fail(f"M{code} is not supported yet", _NOT_YET, word)
         if action is MAction.LEFT_OUT:

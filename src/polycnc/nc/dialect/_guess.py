@@ -47,7 +47,11 @@ _UNREADABLE = (
     _sign(_SIEMENS, rb"%_N_[A-Z0-9_]+_[MS]PF\b"),
     _sign(_HEIDENHAIN_ISO, _NUMBER + rb"%[A-Z0-9_]+[ \t]+G7[01][ \t]*\*"),
     _sign(_OKUMA, _LINE + rb"\$[A-Z0-9_-]+\.(?:MIN|SSB|SUB)%"),
-    _sign(_OKUMA, _NUMBER + rb"(?:V[CS][0-9]+[ \t]*=|G15[ \t]+H[0-9]|CALL[ \t]+O[A-Z])"),
+    _sign(
+        _OKUMA,
+        _NUMBER
+        + rb"(?:V[CS][0-9]+[ \t]*=|G15[ \t]+H[0-9]|CALL[ \t]+O[A-Z]|(?:G85[ \t]+)?NLAP[0-9]|NAT[0-9])",
+    ),
     _sign(_FAGOR, _LINE + rb"%[A-Z0-9_ ]+,MX--?"),
     _sign(_PRINTER, rb"(?<![A-Z])G[ \t]*92[ \t]+E[-.0-9]"),
     _sign(_PRINTER, rb"(?<![A-Z])G[ \t]*0?1[ \t](?:[XYZF][-.0-9]+[ \t]+)+E[-.0-9]"),
@@ -70,6 +74,7 @@ _SIGNS = (
     _sign("linuxcnc", rb"(?<![A-Z])G[ \t]*64[ \t]*P[ \t]*[0-9.]"),
     _sign("bosch", _LINE + rb"[0-9]+[ \t]+(?:(?:" + _CPL_WORDS + rb")\b|" + _CPL_ASSIGNS + rb")"),
     _sign("grbl", _LINE + rb"\$(?:[0-9]+=|[HXCGIN#$]|J=)"),
+    _sign("haas", rb"(?<![A-Z])G[ \t]*150[ \t]+(?:[A-Z][-+0-9. \t]*)*P[ \t]*[0-9]"),
     _sign("fanuc", rb"(?<![A-Z])G[ \t]*6[56](?:\.1)?[ \t]*(?:[A-Z][-+0-9. \t]*)*P[ \t]*[0-9]"),
     _sign("fanuc", _NUMBER + rb"(?:/[0-9]?[ \t]*)?(?:" + _MACRO + rb")"),
     _sign("fanuc", rb"(?<![A-Z])G[ \t]*(?:16|6[89]|5[01]\.1|54\.1)(?![0-9.])"),

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 
 from polycnc.language import Emitter, Flaw, Flow, Traced
 from polycnc.nc.macro._calls import argument_numbers
-from polycnc.nc.macro._expressions import Expressions, Numbers, Value, may_overflow, no_value
+from polycnc.nc.macro._expressions import Expressions, Numbers, Value, may_overflow, no_value, no_variable
 from polycnc.nc.macro._functions import FUNCTIONS, OPERATORS, power
 from polycnc.nc.macro._shape import RESTART, Shape, last_label
 from polycnc.nc.macro._statement_values import INTO_LOOP
@@ -27,6 +27,8 @@ from polycnc.nc.macro._syntax import (
     Number,
     Output,
     Printed,
+    Refusal,
+    Refused,
     Restart,
     Span,
     Statement,
@@ -84,6 +86,7 @@ class Code:
     calls: list[CallSpec] = field(default_factory=list)
     texts: list[str] = field(default_factory=list)
     outputs: list[Output] = field(default_factory=list)
+    refusals: list[Refusal] = field(default_factory=list)
     places: dict[object, tuple[int, int]] = field(default_factory=dict)
 
 
@@ -138,7 +141,11 @@ class _Compiler:
         self._passed(loop.label)
         if loop.condition is None:
             return None
-        condition = self._values.condition(loop.condition)
+        try:
+            condition = self._values.condition(loop.condition)
+        except Refusal as refusal:
+            self._refuse(refusal)
+            return "False"
         self._flush()
         return condition.text
 
@@ -175,6 +182,19 @@ class _Compiler:
         self._values.before.clear()
 
     def _statement(self, statement: Statement) -> None:
+        try:
+            self._write(statement)
+        except Refusal as refusal:
+            self._refuse(refusal)
+
+    def _refuse(self, refusal: Refusal) -> None:
+        """Write the alarm that a statement is when it is executed."""
+        self._values.forget()
+        self._code.refusals.append(refusal)
+        self._out.place = refusal.at
+        self._out.put(f"refuse({len(self._code.refusals) - 1})")
+
+    def _write(self, statement: Statement) -> None:
         out = self._out
         out.place = statement.at
         self._changes += not isinstance(statement, If | Goto | Restart)
@@ -216,6 +236,8 @@ class _Compiler:
                 with out.block("if H.main:"):
                     self._flow.jump(RESTART)
                 out.put("yield RETURN", "return")
+            case Refused():
+                raise statement.flaw
             case While() | End():
                 raise Flaw(statement.at, "a loop begins or ends a block", "Write it alone.", code="PS0125")
 
@@ -233,12 +255,8 @@ class _Compiler:
             return
         kind = self._values.numbers.kind(number)
         if kind == "null":
-            raise Flaw(
-                target.at,
-                "#0 is always vacant and cannot be written",
-                "Write another variable.",
-                code="PS0116",
-            )
+            what = "#0 is always vacant and cannot be written"
+            raise Refusal(target.at, what, "Write another variable.", code="PS0116")
         if kind is None:
             self._system_assignment(statement, number, value)
             return
@@ -267,12 +285,7 @@ class _Compiler:
             out.put(f"yield stop({value.number().text}, {line.line}, {line.offset}, {text})")
             return
         if not self._values.numbers.has(number):
-            raise Flaw(
-                statement.target.at,
-                f"there is no variable #{number}",
-                "See the table of variables.",
-                code="PS0115",
-            )
+            raise no_variable(statement.target.at, number)
         if self._values.numbers.waits(number):
             self._values.before.append(self._values.drain)
         self._flush()
@@ -300,7 +313,7 @@ class _Compiler:
         else:
             self._flow.jump(found)
             return
-        raise Flaw(getattr(statement.target, "at", 0), what, hint, code="PS0128")
+        raise Refusal(getattr(statement.target, "at", 0), what, hint, code="PS0128")
 
     def _open_jump(self, at: int) -> None:
         """Write a jump to the block number in `t`."""
@@ -343,29 +356,12 @@ class _Compiler:
         self._flush()
         self._out.put(f"H.put_out({len(self._code.outputs) - 1}, {_tuple(values)}, {self._line.line})")
 
-    def _arguments(self, call: MacroCall) -> tuple[tuple[int, ...], list[str]]:
-        values = []
-        for word in call.arguments:
-            value = self._values.expression(word.value)
-            if value.truth:
-                raise no_value(word.at)
-            text = value.python.text
-            if (
-                self._increment
-                and isinstance(word.value, Number)
-                and not word.value.point
-                and word.letter in _ANGLES_AND_LENGTHS
-            ):
-                text = repr(word.value.value * self._increment)
-            values.append(text)
-        return tuple(argument_numbers(call.arguments)), values
-
     def _macro_call(self, call: MacroCall) -> None:
         if call.before:
             self._words(call.at, call.before)
         program = self._values.value(call.program).text
         repeats = "1.0" if call.repeats is None else self._values.value(call.repeats).text
-        numbers, values = self._arguments(call)
+        numbers, values = _arguments(call, self._values, self._increment)
         self._code.calls.append(CallSpec(self._line.line, call.at, numbers, call.by_code))
         self._flush()
         index = len(self._code.calls) - 1
@@ -387,6 +383,22 @@ class _Compiler:
         self._flush()
         self._out.put(f"yield sub({len(self._code.calls) - 1}, {call.program}, {repeats})")
         self._after_call()
+
+
+def _arguments(
+    call: MacroCall, expressions: Expressions, increment: float
+) -> tuple[tuple[int, ...], list[str]]:
+    """Return the local variables that the arguments of a call go to, and the arguments as Python."""
+    values = []
+    for word in call.arguments:
+        value = expressions.expression(word.value)
+        if value.truth:
+            raise no_value(word.at)
+        text = value.python.text
+        if increment and isinstance(word.value, Number) and word.letter in _ANGLES_AND_LENGTHS:
+            text = repr(word.value.value * (1.0 if word.value.point else increment))
+        values.append(text)
+    return tuple(argument_numbers(call.arguments)), values
 
 
 def compile_program(

@@ -11,7 +11,7 @@ from typing import Protocol
 
 from polycnc.language import Chain, Flaw, Python, Unary, infix, prefix
 from polycnc.nc.macro._operand_reader import COMPARISONS
-from polycnc.nc.macro._syntax import Expression, Function, Name, Number, Variable
+from polycnc.nc.macro._syntax import Expression, Function, Name, Number, Refusal, Variable
 
 _ARITHMETIC = "+-*/"
 _SMALL = 1e6  # adding so little at a time never gets a variable out of range
@@ -55,6 +55,11 @@ class Expressions:
         self.in_address = False
         self.numbers = numbers
         self._temporaries = 0
+
+    def forget(self) -> None:
+        """Leave a statement that is refused half written."""
+        self.before.clear()
+        self.in_address = False
 
     def value(self, tree: Expression) -> Python:
         value = self.expression(tree)
@@ -106,12 +111,7 @@ class Expressions:
                 return Value(Python(f"L[{number}]"), vacant=True)
             case None:
                 if not self.numbers.has(number):
-                    raise Flaw(
-                        tree.at,
-                        f"there is no variable #{number}",
-                        "See the table of variables.",
-                        code="PS0115",
-                    )
+                    raise no_variable(tree.at, number)
                 if self.numbers.waits(number) and self.drain not in self.before:
                     self.before.append(self.drain)
                 return Value(Python(f"get({number})"), vacant=True)
@@ -157,6 +157,11 @@ class Expressions:
         if operator in _ARITHMETIC:
             return Value(infix(left.number(), operator, right.number()))
         return Value(Python(f"o_{operator}({left.number().text}, {right.number().text})"))
+
+
+def no_variable(at: int, number: int) -> Refusal:
+    """Return what is wrong with a variable that the control does not have."""
+    return Refusal(at, f"there is no variable #{number}", "See the table of variables.", code="PS0115")
 
 
 def no_value(at: int) -> Flaw:

@@ -13,6 +13,7 @@ from polycnc.nc.macro._compile import Code
 from polycnc.nc.macro._line_items import LineItems, SpanItems, check_level, is_stage, items_of
 from polycnc.nc.macro._macro_state import ModalCall, SavedItems, SavedSource
 from polycnc.nc.macro._plain_lines import VariableWords
+from polycnc.nc.macro._refusals import Refusals
 from polycnc.nc.macro._run_state import RunState
 from polycnc.nc.macro._statement_values import (
     alarm,
@@ -63,6 +64,7 @@ class MacroSource:
         self._arguments = arguments or _NO_ARGUMENTS
         self._errors = list(compiled.errors)
         self._pauses = 0
+        self._refusals = Refusals(compiled.text, compiled.code.refusals if compiled.code else [])
         self._outer_modals = language.modals
         self._outer_interrupt = language.interrupt_program
         self._outer_number = language.system.program_number
@@ -166,13 +168,10 @@ class MacroSource:
         if self._execution is None:
             return None
         item: SourceItem | None = self._execution.next()
-        if item is Pause.PAUSE:
-            self._pauses += 1
-            limit = self._language.longest_loop_pauses
-            if limit is not None and self._pauses > limit:
-                raise self._endless()
-        else:
-            self._pauses = 0
+        self._pauses = self._pauses + 1 if item is Pause.PAUSE else 0
+        limit = self._language.longest_loop_pauses
+        if limit is not None and self._pauses > limit:
+            raise self._endless()
         return item
 
     def leave(self) -> bool:
@@ -187,6 +186,8 @@ class MacroSource:
         if self._closed:
             return
         self._closed = True
+        if self.main:
+            self._refusals.remark(self._language.channel.messages)
         if self._execution is not None:
             self._execution.close()
         language = self._language
@@ -243,6 +244,7 @@ class MacroSource:
             "adp": self._with_point,
             "alarm": alarm,
             "stop": stop,
+            "refuse": self._refusals.refuse,
             "label": label,
             "find": self._find,
             "into_loop": into_loop,
@@ -336,9 +338,8 @@ class MacroSource:
         code = self._code
         found = code.shape.find(number, offset)
         if found is None:
-            raise MacroError(
-                f"there is no block N{number} in this program", "Check the block number.", "PS0128"
-            )
+            hint = "Check the block number; a variable without a value counts as 0."
+            raise MacroError(f"there is no block N{number} in this program", hint, "PS0128")
         return code.places[found]
 
     # ------------------------------------------------------------------ errors

@@ -4,11 +4,24 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from polycnc.language import Flaw, Mark
 from polycnc.nc.macro._reader import LineReader
-from polycnc.nc.macro._syntax import End, Goto, If, Line, Number, Part, Restart, Span, Statement, While
+from polycnc.nc.macro._syntax import (
+    End,
+    Goto,
+    If,
+    Line,
+    Number,
+    Part,
+    Refusal,
+    Refused,
+    Restart,
+    Span,
+    Statement,
+    While,
+)
 from polycnc.units import whole
 
 RESTART = "restart"
@@ -123,15 +136,17 @@ class _Nest:
             self.here.append(first)
             self.open.append(first)
         elif isinstance(first, End):
-            self._end(first)
+            assert isinstance(part, Line)
+            self._end(part, first)
         else:
             self.here.append(part)
             return
         self.here = self.open[-1].body if self.open else self.main
 
-    def _end(self, end: End) -> None:
+    def _end(self, line: Line, end: End) -> None:
         if not self.open:
-            self._refuse(end.at, f"END {end.loop} without DO", "Remove it.", "PS0126")
+            flaw = Refusal(end.at, f"END {end.loop} without DO", "Remove it.", code="PS0126")
+            self.here.append(replace(line, statements=(Refused(end.at, flaw),)))
         elif (loop := self.open[-1].loop) != end.loop:
             what = f"END {end.loop} inside DO {loop}: loops cannot cross"
             self._refuse(end.at, what, f"END {loop} comes first.", "PS0124")
@@ -142,9 +157,13 @@ class _Nest:
         self._flaws.append(Flaw(at, what, hint, code=code))
 
     def all_flaws(self) -> list[Flaw]:
-        """Return what is wrong, loops that are still open too."""
-        for each in self.open:
-            self._refuse(each.at, f"DO {each.loop} without END", f"Write END{each.loop}.", "PS0124")
+        """Return what is wrong; loops that are still open become lines that are refused."""
+        while self.open:
+            loop = self.open.pop()
+            around = self.open[-1].body if self.open else self.main
+            flaw = Refusal(loop.at, f"DO {loop.loop} without END", f"Write END{loop.loop}.", code="PS0124")
+            line = Line(loop.line, loop.at, loop.label, 0, (Refused(loop.at, flaw),))
+            around[-1:] = [line, *loop.body]
         return self._flaws
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import TypeAlias
 
-from polycnc.language import Loop, Mark, Tree
+from polycnc.language import Flaw, Loop, Mark, Tree
 
 
 @dataclass(frozen=True, slots=True)
@@ -194,6 +194,18 @@ class Restart:
     at: int
 
 
+class Refusal(Flaw):
+    """Something wrong with a statement, which the control notices when it executes it."""
+
+
+@dataclass(frozen=True, slots=True)
+class Refused:
+    """What is left of a loop without its other end: executed it is refused."""
+
+    at: int
+    flaw: Refusal
+
+
 Statement: TypeAlias = (
     Assignment
     | Goto
@@ -209,6 +221,7 @@ Statement: TypeAlias = (
     | Output
     | Device
     | Names
+    | Refused
 )
 
 

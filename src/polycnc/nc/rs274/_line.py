@@ -69,6 +69,8 @@ _LOCALS = 30
 _COMMON = 5000
 _NESTING = 30
 _EXPRESSION_HINT = "Write it like [#1 + 2]."
+_SPINDLE = re.compile(r"\$[ \t]*(-?[0-9]+)")
+_ROUND_HINT = "Write square brackets, like SQRT[2]: what stands in round ones is a comment."
 
 
 @dataclass(slots=True)
@@ -150,6 +152,8 @@ class LineReader:
             elif char.lower() == "o":
                 self._at += 1
                 line.o_word = self._o_word(at, line.comments)
+            elif char == "$":
+                self._spindle()
             elif char.isalpha() or char in POLAR_LETTERS:
                 self._at += 1
                 line.words.append((char.upper(), self.value(), at))
@@ -159,6 +163,16 @@ class LineReader:
                 )
         line.words = [word for word in line.words if word[0] != "N"]
         return line
+
+    def _spindle(self) -> None:
+        """Read the number of the spindle that S, M3 and their like are for: there is one."""
+        at = self._at
+        found = _SPINDLE.match(self._text, at)
+        if found is None:
+            raise Flaw(at, "$ without the number of a spindle", "Write $0, or remove it.")
+        if float(found[1]) not in (0.0, -1.0):
+            raise Flaw(at, f"there is no spindle {found[1]}", "The machine has one spindle: write $0.")
+        self._at = found.end()
 
     # ------------------------------------------------------------------ values
 
@@ -327,7 +341,8 @@ class LineReader:
 
     def _expect(self, char: str) -> None:
         if not self._take(char):
-            raise Flaw(self._at, f"{char!r} is missing", _EXPRESSION_HINT)
+            hint = _ROUND_HINT if self._text[self._at : self._at + 1] == "(" else _EXPRESSION_HINT
+            raise Flaw(self._at, f"{char!r} is missing", hint)
 
 
 def _applied(operator: str, left: Expression, right: Expression) -> Expression:

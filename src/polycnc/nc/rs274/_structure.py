@@ -21,8 +21,12 @@ _BEFORE_O = re.compile(rb"[ \t/]*(?:[Nn][0-9. \t]+)?")
 _O_NUMBER = re.compile(rb"[Oo][ \t]*[0-9]+[ \t]*(?=[(;\r\n]|\Z)")
 """An O number by itself is the number of a program, and text."""
 _O_WORD = re.compile(rb"[Oo][ \t]*[0-9<]")
+_SPINDLE = r"\$[ \t]*-?[0-9]+(?![0-9]|[ \t]*=)"
+_HAS_SPINDLE = re.compile(_SPINDLE.encode())
 _IS_CODE = re.compile(
-    r"[#\[@^]|^[ \t/]*(?:[Nn][0-9.]+[ \t]*)?[Oo][ \t]*(?![0-9]+[ \t]*(?:[(;\r\n]|$))[0-9<\[#]"
+    r"[#\[@^]|"
+    + _SPINDLE
+    + r"|^[ \t/]*(?:[Nn][0-9.]+[ \t]*)?[Oo][ \t]*(?![0-9]+[ \t]*(?:[(;\r\n]|$))[0-9<\[#]"
     r"|M[ \t]*0*(?:66|7[0-3]|9[89])(?![0-9.])|G[ \t]*0*7[0-2](?![0-9])"
     r"|\([ \t]*(?:debug|print|abort)[ \t]*,",
     re.IGNORECASE,
@@ -45,6 +49,7 @@ def holds_language(content: bytes) -> bool:
     return (
         any(char in content for char in b"#@^")
         or b"[" in content
+        or (b"$" in content and _HAS_SPINDLE.search(content) is not None)
         or any(_O_WORD.match(content, at) and not _O_NUMBER.match(content, at) for at in _o_lines(content))
         or _TEXT_WITH_VALUES.search(content) is not None
         or _OF_LANGUAGE.search(content) is not None

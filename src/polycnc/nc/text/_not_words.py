@@ -25,6 +25,9 @@ _BETWEEN_BLOCKS = re.compile(rf",{_BLANKS}(?P<word>[A-Za-z])")
 _COMMA = re.compile(",")
 _HASH_REMARK = re.compile(rf"{_BLANKS}#(?={_BLANKS}(?:[A-Za-z]{{2}}|[0-9]+[A-Za-z]|#|\Z))")
 _CHECK_SUM = re.compile(rf"(?<=[0-9. \t])\*[0-9]+(?={_BLANKS}\Z)")
+_AXES = "ABCUVWXYZ"
+_HOME = re.compile(r"(?<![A-Z])G *28(?![0-9.])", re.IGNORECASE)
+_NUMBERS = {"G": "1", "M": "3"}
 _LETTERS = re.compile(r"[A-Za-z]{2,}")
 
 
@@ -50,7 +53,8 @@ def syntax_hint(line: str, rules: TextRules) -> SyntaxHint | None:
             "It is a check sum that senders add: remove it.",
         )
     if hash_mark := _HASH_REMARK.match(code):
-        return SyntaxHint(hash_mark.end() - 1, "# begins no remark", "Write remarks in brackets: (remark).")
+        like = "after a semicolon: ; remark." if rules.semicolon_comments else "in brackets: (remark)."
+        return SyntaxHint(hash_mark.end() - 1, "# begins no remark", f"Write remarks {like}")
     if _MARKS.search(code) or _KEYWORDS.search(code):
         return None
     finders = (_decimal_comma, _letters_and_commas)
@@ -111,12 +115,7 @@ def _decimal_comma(code: str) -> SyntaxHint | None:
 def _letters_and_commas(code: str) -> SyntaxHint | None:
     letters, comma = _LETTERS.search(code), _COMMA.search(code)
     if letters is not None and (comma is None or letters.start() < comma.start()):
-        word = letters[0][0]
-        return SyntaxHint(
-            letters.start(),
-            f"'{word}' has no number",
-            f"'{_shown(letters[0])}' is no word: write the number right after the letter, like {word}10.",
-        )
+        return SyntaxHint(letters.start(), f"'{letters[0][0]}' has no number", _letters_hint(letters[0]))
     if comma is None:
         return None
     if between := _BETWEEN_BLOCKS.match(code, comma.start()):
@@ -129,6 +128,22 @@ def _letters_and_commas(code: str) -> SyntaxHint | None:
     return SyntaxHint(
         comma.start(), "',' is not allowed in a block", "A block holds words like X12.5; remove it."
     )
+
+
+def number_hint(letter: str, before: str) -> str:
+    """Return what to do with a letter without a number; `before` stands before it in its line."""
+    if letter.upper() in _AXES and _HOME.search(before):
+        return f"To home {letter.upper()} from where it is, write G91 G28 {letter.upper()}0, then G90."
+    return f"Write the number right after the letter, like {letter}{_NUMBERS.get(letter.upper(), '10')}."
+
+
+def _letters_hint(letters: str) -> str:
+    if letters[1:].upper().strip("O") == "":
+        return f"Write zeros instead of the letter O: {letters[0]}{'0' * (len(letters) - 1)}."
+    if len(letters) > 2:
+        return f"'{_shown(letters)}' is no word: write text as a comment, or remove it."
+    hint = number_hint(letters[0], "")
+    return f"'{letters}' is no word: {hint[0].lower()}{hint[1:]}"
 
 
 def _shown(letters: str) -> str:

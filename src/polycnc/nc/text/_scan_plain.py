@@ -13,6 +13,7 @@ from dataclasses import dataclass
 from functools import lru_cache
 
 from polycnc.errors import ProgramError
+from polycnc.nc.text._not_words import number_hint
 from polycnc.nc.text._program import ProgramText, TextRules
 from polycnc.nc.text._scan import BLANK_BYTES, COMMENT, LABEL, MESSAGE, PERCENT, PLAIN, STATEMENT
 from polycnc.units import whole
@@ -218,9 +219,7 @@ class _LineReader:
             raise self._misplaced(char)
         else:
             letter = self.line[self.place]
-            raise self._error(
-                f"'{letter}' has no number", f"Write the number right after the letter, like {letter}10."
-            )
+            raise self._error(f"'{letter}' has no number", number_hint(letter, self.line[: self.place]))
 
     def _add(self, letter: str, sign: str, digits: str, index: int | None = None) -> None:
         value = float(sign + digits)

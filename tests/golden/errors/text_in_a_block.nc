@@ -1,0 +1,1 @@
+G1 X5 F100 rough cut
