@@ -363,35 +363,40 @@ class RunningProgram:
         return found
 
     def _asked(self, label: str, arguments: tuple[float, ...], line: int) -> CallRequest:
-        level = self._levels[-1]
-        found = [each for each in (level.program, self._main) if label in each.functions]
-        program = found[0] if found and label else self._owner.file_of(label, self._main.text)
-        if program is None or not label or label not in program.functions:
+        program = self._program_with(label, label) if label else None
+        if program is None:
             raise NumberError(
                 f"there is no sub-program O<{label}>",
                 f"Write O<{label}> SUB in this file, or put it into {label}.ngc beside the program or in --root.",
             )
-        self._check_depth()
         return CallRequest(program, label, arguments, line)
 
     def _asked_number(self, number: int, line: int) -> CallRequest:
-        level = self._levels[-1]
         label = numbered_label(str(number))
-        found = [each for each in (level.program, self._main) if label in each.functions]
-        program = found[0] if found else self._owner.file_of(str(number), self._main.text)
-        if program is None or label not in program.functions:
+        program = self._program_with(label, str(number))
+        if program is None:
             raise NumberError(
                 f"there is no sub-program O{number} that ends with M99",
                 f"Write O{number} and M99 in lines of their own, here or in {number}.ngc beside the program.",
             )
-        self._check_depth()
         return CallRequest(program, label, (), line, shares=True)
 
-    def _check_depth(self) -> None:
-        if len(self._levels[-1].calls) >= MOST_LEVELS:
+    def _program_with(self, label: str, file: str) -> Program | None:
+        """Return the program that has a sub-program: this one, the main one, or that of a file; None if none has.
+
+        Raises:
+            NumberError: calls are nested too deep.
+        """
+        level = self._levels[-1]
+        found = [each for each in (level.program, self._main) if label in each.functions]
+        program = found[0] if found else self._owner.file_of(file, self._main.text)
+        if program is None or label not in program.functions:
+            return None
+        if len(level.calls) >= MOST_LEVELS:
             raise NumberError(
                 f"sub-programs are nested more than {MOST_LEVELS} deep", "Does one call itself?"
             )
+        return program
 
     def _refused(self, error: Exception) -> ProgramError:
         """Return an error with the place in the program that it came from; nothing more is asked for."""
