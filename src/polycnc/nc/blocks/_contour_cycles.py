@@ -17,7 +17,7 @@ from polycnc.nc.blocks._block import BlockContext
 from polycnc.nc.blocks._channel_state import ChannelState
 from polycnc.nc.blocks._corner_blocks import refuse_open
 from polycnc.nc.blocks._handlers import carries_out
-from polycnc.nc.blocks._moves import Arc, Line, QueueItem, Spline
+from polycnc.nc.blocks._moves import Arc, GeometryError, Line, QueueItem, Spline
 from polycnc.nc.blocks._outcomes import NEXT
 from polycnc.nc.blocks._turning import (
     SAME_MM,
@@ -25,7 +25,6 @@ from polycnc.nc.blocks._turning import (
     Roughing,
     Step,
     Turning,
-    TurningError,
     exchanged,
     repeat,
     rough,
@@ -180,7 +179,7 @@ def contour_cycle(
         else:
             relief = turning.relief
             steps = repeat(pieces, relief[:2], relief[2], allowance, first_rapid=first_rapid)
-    except TurningError as error:
+    except GeometryError as error:
         raise block.problem(f"G{g.code}: {error.what}", error.hint, g.word) from None
     return list(turns.items(block, steps, block.start))
 

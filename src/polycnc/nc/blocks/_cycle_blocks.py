@@ -32,16 +32,11 @@ from polycnc.nc.blocks._words import GWord, dwell_seconds, whole_number
 from polycnc.nc.modal._actions import Family, Group
 from polycnc.nc.modal._modal import (
     ABSOLUTE,
-    AXIS_P,
-    AXIS_Q,
-    AXIS_R,
     FEED,
     FEED_INVERSE_TIME,
     FEED_MODE,
     FEED_PER_REVOLUTION,
     NO_AXIS,
-    PLANE,
-    PLANE_LETTERS,
     length_scale,
 )
 from polycnc.nc.text._scan_plain import Word
@@ -60,7 +55,7 @@ def begin(block: BlockContext, g: GWord) -> None:
     cycle = block.after.cycle
     initial = cycle.initial
     if not cycle.action:
-        axis = int(block.after.modal.whole[AXIS_R])
+        axis = block.after.plane[2]
         initial = float(block.after.modal.position[axis]) if axis != NO_AXIS else 0.0
     if _strict(block) and g.word.value != cycle.code:
         cycle = replace(cycle, words=CycleWords())
@@ -75,10 +70,10 @@ def moves(block: BlockContext) -> list[QueueItem]:
         ProgramError: a word is missing or does not make sense, a limit would be passed.
     """
     whole, words = block.after.modal.whole, block.words
-    axes = (int(whole[AXIS_P]), int(whole[AXIS_Q]), int(whole[AXIS_R]))
+    axes = block.after.plane
     code = f"G{block.after.cycle.code:g}"
     if NO_AXIS in axes:
-        letters = PLANE_LETTERS[int(whole[PLANE])]
+        letters = block.after.plane_letters
         raise block.problem(
             f"{code} needs the axes {', '.join(letters)} here, and the machine lacks one of them",
             "Select a plane of the machine's axes with G17, G18 or G19.",

@@ -15,7 +15,7 @@ from polycnc.nc.blocks._block import BlockContext
 from polycnc.nc.blocks._channel_state import ChannelState
 from polycnc.nc.blocks._compensation_errors import CompensationError
 from polycnc.nc.blocks._moves import Arc, Line, Move, Point, QueueItem, Spline, Wait
-from polycnc.nc.modal._modal import AXIS_P, AXIS_Q, LARGEST
+from polycnc.nc.modal._modal import LARGEST
 from polycnc.nc.text._scan_plain import Word
 
 LIMIT_ROUNDING = 1e-6
@@ -37,9 +37,9 @@ def check(block: BlockContext, point: Point, what: str = "would go to") -> None:
     Raises:
         ProgramError: names the axis, the position and the limit.
     """
-    state, whole = block.after, block.after.modal.whole
+    state = block.after
     compensated = state.side != 0 or state.compensation.active
-    later = (int(whole[AXIS_P]), int(whole[AXIS_Q])) if compensated else ()
+    later = state.plane[:2] if compensated else ()
     for index, text, hint in _limit_problems(state, point, what, later):
         axis = state.axis_names[index]
         error = block.problem(text, hint, block.words.first(axis))

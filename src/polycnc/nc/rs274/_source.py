@@ -135,7 +135,7 @@ class RunningProgram:
             "profile": lambda words: profile_of(
                 self._levels[-1].program.functions, self._function, owner.parameters.state, words
             ),
-            "says": self._says,
+            "says": lambda line, offset, text: self._block(line, offset, (), text),
             **text_functions(owner.parameters),
             "times": lambda number: max(0, round(number)),
             "label": lambda number: str(round(number)),
@@ -315,9 +315,9 @@ class RunningProgram:
             made.goes_back = None if level.goes_back is None else ModesRequest(*level.goes_back)
             if traced is not program.functions[level.label]:
                 made.run.close()
-            if traced is not None and traced is not program.functions[level.label]:
-                made.run = traced.load(self._names)["program"](made.numbered, made.named, level.names)
-                next(made.run)
+                if traced is not None:
+                    made.run = traced.load(self._names)["program"](made.numbered, made.named, level.names)
+                    next(made.run)
         self._pauses, self._over, self._calls = saved.pauses, saved.over, saved.calls
         text = self._levels[-1].program.text
         self._back = [
@@ -344,10 +344,6 @@ class RunningProgram:
         return WordsBlock(
             _made(words), line, offset, message, text=level.program.text, calls=level.calls, profile=profile
         )
-
-    def _says(self, line: int, offset: int, text: str) -> WordsBlock:
-        level = self._levels[-1]
-        return WordsBlock((), line, offset, text, text=level.program.text, calls=level.calls)
 
     def _drain(self, line: int) -> Drain:
         level = self._levels[-1]
@@ -409,14 +405,12 @@ class RunningProgram:
         frame = frame_of(error, lambda name: traced[name][0] if name in traced else None)
         position = None if frame is None else traced[frame.name][1].text.position(frame.place)
         match error:
-            case NumberError():
+            case NumberError() | UsageError():
                 return ProgramError(error.what, position=position, hint=error.hint)
             case KeyError():
                 return ProgramError(
                     f"#<{error.args[0]}> has no value", position=position, hint="Set it first."
                 )
-            case UsageError():
-                return ProgramError(error.what, position=position, hint=error.hint)
         return ProgramError("the number is too large", position=position, hint="Look at the expression.")
 
 
