@@ -195,7 +195,7 @@ def test_a_short_file_gets_the_documented_defaults(tmp_path: Path) -> None:
     assert dialect.g_action(1) is None
     assert dialect.m_action(30) is MAction.PROGRAM_END
     assert dialect.tables().least_input == 0.0
-    assert dialect.cycle_settings().chip_break_mm == dialect.cycles.chip_break_mm
+    assert dialect.cycles.chip_break_mm == 1.0
 
 
 def test_values_of_a_file_reach_their_readers(tmp_path: Path) -> None:
@@ -213,7 +213,7 @@ def test_values_of_a_file_reach_their_readers(tmp_path: Path) -> None:
     )
     assert dialect.m_action(31) is None
     assert dialect.tables().least_input == 0.01
-    assert (dialect.cycle_settings().chip_break_mm, dialect.cycle_settings().reentry_mm) == (0.25, 2.0)
+    assert (dialect.cycles.chip_break_mm, dialect.cycles.reentry_mm) == (0.25, 2.0)
     assert dialect.text_rules() == TextRules(
         semicolon_comments=False, unclosed_comments=True, line_numbers=True, statement_characters="["
     )

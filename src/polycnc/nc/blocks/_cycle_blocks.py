@@ -94,11 +94,10 @@ def moves(block: BlockContext) -> list[QueueItem]:
     if further:
         place = replace(place, further_mm=further)
     try:
-        settings = block.dialect.cycle_settings()
         levels = _with_pitch(block, cycle)
         if block.dialect.cycles.levels_as_written and not whole[ABSOLUTE]:
             levels = levels.absolute(place.initial_mm)
-        steps = expand_cycle(cycle.action, levels, place, settings, code=code)
+        steps = expand_cycle(cycle.action, levels, place, block.dialect.cycles, code=code)
     except CycleError as error:
         at = words.first(*_LETTERS_OF_REASON.get(error.reason, "")) or block.move_word
         raise block.problem(error.what, error.hint, at) from None
@@ -177,6 +176,7 @@ def _place(
         spindle=_SPINDLES[direction],
         spindle_rpm=feeds.rpm(block, start, start),
         rigid=rigid,
+        taps_either_way="G84 with M4" not in block.dialect.refuses,
     )
 
 

@@ -21,7 +21,7 @@ from pydantic import AfterValidator, Field, model_validator
 from polycnc.errors import UsageError, did_you_mean
 from polycnc.machine import PathConfig, StrictModel, load_toml, parse_toml, problem, validate
 from polycnc.nc.dialect._arc_settings import Arcs
-from polycnc.nc.dialect._cycle_settings import Cycles, CycleSettings
+from polycnc.nc.dialect._cycle_settings import Cycles
 from polycnc.nc.modal._actions import M_ACTIONS, NO_SENSE, Action, Family, Group, MAction, of_family, sense_of
 from polycnc.nc.modal._modal import (
     ABSOLUTE,
@@ -390,19 +390,6 @@ class Dialect(StrictModel):
     def text_rules(self) -> TextRules:
         """Return the rules of the block scanners."""
         return TextRules(**dict(self.text))
-
-    def cycle_settings(self) -> CycleSettings:
-        """Return the settings of the drilling cycles."""
-        cycles = self.cycles
-        sign = 1.0 if cycles.shift[0] == "+" else -1.0
-        return CycleSettings(
-            chip_break_mm=cycles.chip_break_mm,
-            reentry_mm=cycles.reentry_mm,
-            shift_direction=(sign, 0.0) if cycles.shift[1] == "1" else (0.0, sign),
-            peck_tap=cycles.peck_tap,
-            feeds_out=cycles.feeds_out,
-            taps_either_way="G84 with M4" not in self.refuses,
-        )
 
     @property
     def increment(self) -> float:
