@@ -53,7 +53,7 @@ class ChannelRules:
         self.sorter = WordSorter(dialect)
         self.increment = dialect.increment
         self.stops_at_limits = dialect.soft_limits == "at_limit"
-        self.text_rules: TextRules = dialect.text_rules()
+        self.text_rules: TextRules = dialect.text
         self.low: list[float] = state.modal.low.tolist()
         self.high: list[float] = state.modal.high.tolist()
         self.modulo = [int(kind) == MODULO_AXIS for kind in state.modal.rotary]

@@ -362,7 +362,7 @@ class NotBlocks:
     def __init__(self, dialect: Dialect) -> None:
         self._name = dialect.name
         self._has_language = dialect.language != "none"
-        self._rules = dialect.text_rules()
+        self._rules = dialect.text
         self._known: tuple[ProgramText, int, int] | None = None  # a program, its first statement, how many
 
     def problem(self, text: ProgramText, block: Block) -> ProgramError:
