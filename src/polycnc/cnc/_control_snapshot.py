@@ -19,7 +19,7 @@ from polycnc.cnc._run_snapshot import RunSnapshot, file_text
 from polycnc.cnc._spindle import SpindleMotion
 from polycnc.cnc._status import Emergency
 from polycnc.cnc._timers import TimersState
-from polycnc.machine import Snapshot, SnapshotError, described
+from polycnc.machine import Snapshot, SnapshotError, damaged_snapshot, described
 from polycnc.nc import IncomingText, ProgramText
 
 DEVICE = "control"
@@ -102,9 +102,7 @@ class ControlSnapshot(Snapshot):
         try:
             return _MOMENT.validate_python(self.data())
         except ValidationError as error:
-            raise SnapshotError(
-                f"the snapshot of a control is damaged: {error.errors()[0]['msg']}", hint="use another one"
-            ) from error
+            raise damaged_snapshot(error.errors()[0]["msg"], "control") from error
 
     def to_bytes(self) -> bytes:
         """Return the snapshot as the contents of a file."""
@@ -228,7 +226,7 @@ class Keeping:
         moment: ControlMoment = snapshot.moment()
         runs = snapshot.runs or (None,) * len(self._of.channels)
         if len(runs) != len(self._of.channels) or len(moment.channels) != len(self._of.channels):
-            raise SnapshotError("the snapshot of a control is damaged", hint="use another one")
+            raise damaged_snapshot(device="control")
         back = [
             channel.runs.restore_point(run, self._text)
             for channel, run in zip(self._of.channels, runs, strict=True)

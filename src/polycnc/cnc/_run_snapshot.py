@@ -16,7 +16,7 @@ from polycnc.cnc._run_state import RunAlarm, RunState
 from polycnc.cnc._stops import Step
 from polycnc.cnc._tool_times import ToolTime, ToolTimes
 from polycnc.errors import UsageError
-from polycnc.machine import Snapshot, SnapshotError, Values, described
+from polycnc.machine import Snapshot, SnapshotError, Values, damaged_snapshot, described
 from polycnc.nc import (
     CHANNEL_CLASSES,
     ChannelSnapshot,
@@ -96,7 +96,7 @@ class RunSnapshot(Snapshot):
             ]
             plain = data["run"]
         except (LookupError, TypeError, ValueError) as error:
-            raise SnapshotError(f"the snapshot is damaged: {error}", hint="use another one") from error
+            raise damaged_snapshot(error) from error
         if changes:
             raise SnapshotError(
                 f"{changes[0]} has been changed since the snapshot was taken",
@@ -104,7 +104,7 @@ class RunSnapshot(Snapshot):
             )
         saved = _values(Texts(texts), language).value(plain)
         if not isinstance(saved, SavedRun) or not saved.channel.calls:
-            raise SnapshotError("the snapshot is damaged: there is no run in it", hint="use another one")
+            raise damaged_snapshot("there is no run in it")
         return saved
 
 
