@@ -10,8 +10,8 @@ from typing import Any, get_type_hints
 
 from polycnc import cnc
 from polycnc.cnc import Control
-from polycnc.cnc._control_moment import Keeping
 from polycnc.cnc._control_parts import ControlParts
+from polycnc.cnc._control_snapshot import Keeping
 from polycnc.cnc._manual_commands import ManualCommands
 from polycnc.cnc._program_commands import ProgramCommands
 from polycnc.cnc._program_edit import ProgramEdits

@@ -88,7 +88,7 @@ def _number(value: float) -> str:
 
 def _words(channel: Channel) -> str:
     words = word_columns(2, 8)
-    scan(_program().data, 0, 1, scan_rules(channel.dialect.text_rules()), words)
+    scan(_program().data, 0, 1, scan_rules(channel.dialect.text), words)
     n = words.n_words
     header = ("", *(f"[{i}]" for i in range(n)))
     return (

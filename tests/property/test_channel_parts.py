@@ -75,7 +75,7 @@ def test_the_portions_in_which_blocks_are_prepared_do_not_matter(
 
 
 def reader_of(text: ProgramText) -> Reader:
-    rules = FANUC.text_rules()
+    rules = FANUC.text
     return Reader(text, rules, scan_rules(rules), frozenset({3}))
 
 
@@ -101,7 +101,7 @@ def test_a_reader_gives_the_blocks_of_a_text_from_any_line_on(program: str, data
     expected: list[object] = []
     begun = False
     for number in range(line, program.count("\n") + 1):
-        block = said(partial(scan_block, text, text.line_start(number), number, FANUC.text_rules()))
+        block = said(partial(scan_block, text, text.line_start(number), number, FANUC.text))
         if not isinstance(block, Block):
             expected.append(block)
         elif not block.is_blank:

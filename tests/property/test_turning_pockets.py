@@ -15,7 +15,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from polycnc.nc.blocks._turning import Piece, Roughing, Step, TurningError, exchanged, rough
+from polycnc.nc.blocks._moves import GeometryError
+from polycnc.nc.blocks._turning import Piece, Roughing, Step, exchanged, rough
 from polycnc.nc.blocks._turning_pockets import rough_pockets
 from support.often import share
 
@@ -168,7 +169,7 @@ def test_a_contour_without_pockets_takes_the_levels_of_the_plain_cycle() -> None
     ],
 )
 def test_contours_that_cannot_be_cut(points: list[tuple[float, float]], text: str) -> None:
-    with pytest.raises(TurningError, match=text):
+    with pytest.raises(GeometryError, match=text):
         rough_pockets(contour_of(points), Roughing(4.0, 1.0, (0.0, 0.0)), first_rapid=True)
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from polycnc.cnc._axis_alarms import axis_alarm
+from polycnc.cnc._path_runner import axis_alarm
 from polycnc.kernel import FOLLOWING_ERROR, LIMIT_HIGH, LIMIT_LOW, PATH_RESTED, REFERENCE, SWITCH_EDGE
 from polycnc.machine import Machine
 from support.cnc_machine import cnc_machine

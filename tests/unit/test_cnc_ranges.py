@@ -45,11 +45,11 @@ from polycnc.cnc import (
     ToolTable,
     ToolTime,
 )
-from polycnc.cnc._block_search import block_line
 from polycnc.cnc._plc import functions_of
 from polycnc.cnc._program_edit import ProgramEdits
 from polycnc.cnc._program_memory import first_comment
 from polycnc.cnc._reference_steps import reference_steps
+from polycnc.cnc._run_selection import block_line
 from polycnc.cnc._tool_times import ToolTimes
 from polycnc.errors import PolycncError, ProgramError, UsageError
 from polycnc.machine import Clock, MachineConfig, Store, TimesConfig

@@ -74,7 +74,7 @@ class Taker:
         self.before = self.channel.state.copy()
         self.made = made
         lines = ("G1 X4. Z3.\n", "G1 X6. Z1.\n")  # of a sub-program whose profile is cut
-        rules = self.dialect.text_rules()
+        rules = self.dialect.text
         self.profile = tuple(scan_block(ProgramText.from_text(line), 0, 1, rules) for line in lines)
         self.axes = set(self.before.axis_names) | set(self.dialect.incremental)
 
@@ -82,7 +82,7 @@ class Taker:
         """Return the addresses that a block takes, refused or not."""
         text = ProgramText.from_text(line)
         with contextlib.suppress(ProgramError):
-            block = scan_block(text, 0, 1, self.dialect.text_rules())
+            block = scan_block(text, 0, 1, self.dialect.text)
             self.channel.interpreter.execute(text, replace(block, profile=self.profile))
         self.channel.state.take(self.before)
         return self.made[-1].words.used & self.made[-1].words.by_letter.keys()

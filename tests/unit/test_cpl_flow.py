@@ -177,7 +177,7 @@ LOST = [
 @pytest.mark.parametrize("head", ["", "  ", "N20 "])
 @pytest.mark.parametrize("statement", LOST)
 def test_a_block_that_has_lost_its_number_is_refused_where_it_stands(statement: str, head: str) -> None:
-    linker = Linker(RecordingHost().program, codes=CodeCalls(rules=load_dialect("bosch").text_rules()))
+    linker = Linker(RecordingHost().program, codes=CodeCalls(rules=load_dialect("bosch").text))
     _, found = linker.link(f"10 A%=1\nN15 X5 (A=B) Y1=3\n{head}{statement}\n30 A%=3", "main.cpl")
     (error,) = found
     assert error.position is not None

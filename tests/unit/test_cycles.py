@@ -18,7 +18,7 @@ from polycnc.nc.blocks._cycles import (
     StepKind,
     expand_cycle,
 )
-from polycnc.nc.dialect._cycle_settings import CycleSettings
+from polycnc.nc.dialect._cycle_settings import Cycles
 from support.rs274 import COMMAND, call
 
 PLACE = CyclePlace(hole_mm=(5.0, 7.0), initial_mm=10.0, level_mm=10.0)
@@ -26,7 +26,7 @@ R_PLACE = CyclePlace(hole_mm=(5.0, 7.0), initial_mm=10.0, level_mm=10.0, retract
 WORDS = CycleWords(depth_mm=-3.0, retract_mm=2.0)
 FULL = CycleWords(depth_mm=-3.0, retract_mm=2.0, peck_mm=2.0, dwell_s=0.5, shift_mm=(1.0, 0.5), back_mm=-1.0)
 # The amount LinuxCNC backs up by, 0.010 inch.
-TEN_THOU = CycleSettings(chip_break_mm=0.254, reentry_mm=0.254)
+TEN_THOU = Cycles(chip_break_mm=0.254, reentry_mm=0.254)
 
 
 def text(step: CycleStep) -> str:
@@ -142,7 +142,7 @@ def test_a_peck_deeper_than_the_hole_is_one_feed() -> None:
 
 def test_backing_up_ends_at_r() -> None:
     words = CycleWords(depth_mm=-1.0, retract_mm=2.0, peck_mm=2.0)
-    wide = CycleSettings(chip_break_mm=9.0, reentry_mm=9.0)
+    wide = Cycles(chip_break_mm=9.0, reentry_mm=9.0)
     broken = [text(step) for step in expand_cycle("cycle_chip_break", words, R_PLACE, wide)]
     assert broken == ["xy 5 7", "rapid 2", "feed 0", "rapid 2", "feed -1", "rapid 2"]
     assert [text(step) for step in expand_cycle("cycle_deep", words, R_PLACE, wide)] == broken
@@ -189,7 +189,7 @@ def test_shift_moves_with_the_hole() -> None:
 
 def test_q_shifts_where_no_i_and_j_are() -> None:
     words = CycleWords(depth_mm=-3.0, retract_mm=2.0, peck_mm=0.5)
-    out = expand_cycle("cycle_fine_bore", words, PLACE, CycleSettings(shift_direction=(0.0, -1.0)))
+    out = expand_cycle("cycle_fine_bore", words, PLACE, Cycles(shift="-2"))
     assert "xy 5 6.5" in [text(step) for step in out]
 
 

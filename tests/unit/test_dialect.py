@@ -148,7 +148,7 @@ def test_bosch_has_three_groups_of_zero_shifts_and_a_code_to_leave_each() -> Non
 
 def test_bosch_recognises_cpl_blocks() -> None:
     text = ProgramText.from_text('10 A%=5 : B$="x"\nN10 G1 X[A%]\n.LABEL\nREM end\nN30 P999\n')
-    flags = [block.flags & STATEMENT for block in scan_blocks(text, load_dialect("bosch").text_rules())]
+    flags = [block.flags & STATEMENT for block in scan_blocks(text, load_dialect("bosch").text)]
     assert flags == [STATEMENT, STATEMENT, STATEMENT, STATEMENT, 0]
 
 
@@ -190,12 +190,12 @@ def test_every_action_has_a_group_and_its_number_is_not_zero() -> None:
 
 def test_a_short_file_gets_the_documented_defaults(tmp_path: Path) -> None:
     dialect = own(tmp_path, SHORT)
-    assert dialect.text_rules() == TextRules()
+    assert dialect.text == TextRules()
     assert dialect.g_action(5.1) is Action.IGNORED
     assert dialect.g_action(1) is None
     assert dialect.m_action(30) is MAction.PROGRAM_END
     assert dialect.tables().least_input == 0.0
-    assert dialect.cycle_settings().chip_break_mm == dialect.cycles.chip_break_mm
+    assert dialect.cycles.chip_break_mm == 1.0
 
 
 def test_values_of_a_file_reach_their_readers(tmp_path: Path) -> None:
@@ -213,8 +213,8 @@ def test_values_of_a_file_reach_their_readers(tmp_path: Path) -> None:
     )
     assert dialect.m_action(31) is None
     assert dialect.tables().least_input == 0.01
-    assert (dialect.cycle_settings().chip_break_mm, dialect.cycle_settings().reentry_mm) == (0.25, 2.0)
-    assert dialect.text_rules() == TextRules(
+    assert (dialect.cycles.chip_break_mm, dialect.cycles.reentry_mm) == (0.25, 2.0)
+    assert dialect.text == TextRules(
         semicolon_comments=False, unclosed_comments=True, line_numbers=True, statement_characters="["
     )
     modal = make_modal(["X", "Y", "Z", "A"], [False, False, False, True], [0.0] * 4, [1.0] * 4)

@@ -1,9 +1,10 @@
-"""The axes of a channel: which it has, and those lent to manual motion while its program is interrupted."""
+"""The axes of a channel: which it has, which follow its path, and those lent to manual motion meanwhile."""
 
 from __future__ import annotations
 
 from collections.abc import Collection
 
+from polycnc import kernel
 from polycnc.kernel import OTHER_SOURCE, give_to_point_to_point
 from polycnc.machine import Machine
 
@@ -54,3 +55,14 @@ class ChannelAxes:
         for axis, _ in self.taken or ():
             self._machine.state.owner[axis] = OTHER_SOURCE if locked else self._path
         self.taken = None
+
+
+def give_axes(machine: Machine, path: int, *, locked: bool) -> None:
+    """Let the axes follow the path from where they stand, or nothing while the machine is locked."""
+    state = machine.state
+    for column, axis in enumerate(state.paths.axis[path]):
+        if axis < 0 or state.owner[axis] not in (path, kernel.OTHER_SOURCE):
+            continue
+        if state.owner[axis] == kernel.OTHER_SOURCE and not locked:  # the path went on without it
+            state.paths.position[path, column] = state.paths.queued[path, column] = state.base[axis]
+        state.owner[axis] = kernel.OTHER_SOURCE if locked else path

@@ -13,9 +13,8 @@ from pathlib import Path
 from polycnc.cnc._alarms import MOST_MESSAGE_CHARACTERS, Alarm
 from polycnc.cnc._control_checks import wrong_mode
 from polycnc.cnc._control_data import ChannelData, ControlData, Mode, Overrides, Switches
-from polycnc.cnc._control_making import check_shares, make_parts
-from polycnc.cnc._control_moment import Keeping
-from polycnc.cnc._control_snapshot import ControlSnapshot
+from polycnc.cnc._control_parts import check_shares, make_parts
+from polycnc.cnc._control_snapshot import ControlSnapshot, Keeping
 from polycnc.cnc._control_time import Condition, ControlEvent, ControlTime, CycleWatch
 from polycnc.cnc._inventory import Inventory, InventoryReader
 from polycnc.cnc._manual_commands import ManualCommands

@@ -12,7 +12,6 @@ import numpy as np
 import numpy.typing as npt
 
 from polycnc import kernel
-from polycnc.cnc._axis_alarms import axis_alarm
 from polycnc.cnc._passed_events import PassedEvents
 from polycnc.cnc._path_events import PathEvents
 from polycnc.cnc._path_feed import PathFeed
@@ -22,6 +21,7 @@ from polycnc.cnc._run_progress import RunProgress
 from polycnc.cnc._run_reading import Floats, RunReading
 from polycnc.cnc._run_state import RunAlarm, RunOptions, RunState
 from polycnc.cnc._stops import Step, Stopper
+from polycnc.kernel import FOLLOWING_ERROR, LIMIT_HIGH, LIMIT_LOW, SWITCH_EDGE
 from polycnc.machine import Machine, Reason
 from polycnc.nc import LINE_MASK, Channel
 
@@ -319,3 +319,24 @@ class PathRunner:
         self.moment.state = RunState.ALARM
         self.moment.hold, self.moment.hold_later = True, False
         self.path_hold.apply()
+
+
+_LIMIT_SWITCHES = (LIMIT_LOW, LIMIT_HIGH)
+
+
+def axis_alarm(machine: Machine, raised: int, path: int) -> tuple[str, str] | None:
+    """Return text and code of the first alarm of a path's axes by the reasons `raised` in a cycle, None for none."""
+    if not raised & (FOLLOWING_ERROR | SWITCH_EDGE):
+        return None
+    state = machine.state
+    for index, axis in enumerate(machine.config.axes):
+        if index not in state.paths.axis[path]:
+            continue
+        if raised & FOLLOWING_ERROR and state.servo.error_tripped[index]:
+            error = float(state.servo.row[index]["following_error"])
+            text = f"axis {axis.name}: following error {error:.4f} {axis.unit} is above its limit"
+            return text, "following_error"
+        if raised & SWITCH_EDGE and any(state.switches.switch[index, j]["level"] for j in _LIMIT_SWITCHES):
+            at = float(state.servo.actual[index])
+            return f"axis {axis.name} is on a limit switch at {at:.3f} {axis.unit}", "limit_switch"
+    return None

@@ -16,11 +16,10 @@ from polycnc.cnc._path_feed import PathFeed
 from polycnc.cnc._path_overrides import PathOverrides
 from polycnc.cnc._path_runner import PathRunner, Rows, Until
 from polycnc.cnc._run_channels import RunChannels
-from polycnc.cnc._run_going_back import RunGoingBack
 from polycnc.cnc._run_progress import RunProgress
 from polycnc.cnc._run_reading import RunReading
 from polycnc.cnc._run_selection import RunSelection
-from polycnc.cnc._run_snapshot import FindText, RunSnapshot, file_text
+from polycnc.cnc._run_snapshot import FindText, RunGoingBack, RunSnapshot, file_text
 from polycnc.cnc._run_state import OVER, STANDING, RunAlarm, RunOptions, RunState
 from polycnc.cnc._run_switches import RunSwitches
 from polycnc.cnc._stops import Step, Stopper

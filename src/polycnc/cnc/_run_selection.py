@@ -2,16 +2,19 @@
 
 from __future__ import annotations
 
+import re
+
 from polycnc import kernel
-from polycnc.cnc._block_search import block_line, calculate_to
-from polycnc.cnc._path_axes import give_axes
+from polycnc.cnc._channel_axes import give_axes
 from polycnc.cnc._path_runner import PathRunner
 from polycnc.cnc._run_channels import RunChannels
 from polycnc.cnc._run_reading import RunReading
 from polycnc.cnc._run_state import OVER, RunState
 from polycnc.cnc._stops import Step
 from polycnc.errors import UsageError
-from polycnc.nc import ProgramText
+from polycnc.kernel import drop_queue, give_to_path
+from polycnc.machine import Machine
+from polycnc.nc import Channel, ProgramText
 
 
 class RunSelection:
@@ -126,3 +129,48 @@ class RunSelection:
         runner.channel = channel
         moment.met = moment.approach = moment.searched = None  # of the program before
         runner.feed.clear()
+
+
+_SEQUENCE = rb"(?:\A|(?<=[\r\n]))[ \t]*(?:/[1-9]?)?[ \t]*[Nn][ \t]*0*%d(?![0-9.])"
+
+
+def block_line(program: ProgramText, line: int, sequence: int | None) -> int:
+    """Return the line of the block on `line`, or of the first one with a sequence number if that is given.
+
+    Raises:
+        UsageError: the program has no such line or block.
+    """
+    if sequence is None:
+        lines = len(program.content.splitlines())
+        if not 1 <= line <= lines:
+            raise UsageError(f"{program.name} has no line {line}", hint=f"Its lines are 1 to {lines}.")
+        return line
+    match = re.search(_SEQUENCE % sequence, program.content) if sequence >= 0 else None
+    if match is None:
+        raise UsageError(
+            f"{program.name} has no block N{sequence}", hint="Give the number of a block in the main program."
+        )
+    return program.position(match.start()).line
+
+
+def calculate_to(machine: Machine, channel: Channel, line: int) -> None:
+    """Carry out what stands before `line` without moving; the channel's position is where that block begins.
+
+    Raises:
+        UsageError: the program ends before, or cannot be calculated.
+    """
+    state, path = machine.state, channel.path
+    row = state.paths.row[path]
+
+    def skip_queue() -> None:
+        for name in ("head", "prepared", "planned"):
+            row[name] = row["tail"]
+
+    give_to_path(state, path)
+    channel.state.modal.position[:] = state.paths.position[path]
+    try:
+        if not channel.calculate_to(line, skip_queue):
+            hint = "Search a block that is executed." if channel.error is None else str(channel.error)
+            raise UsageError(f"the program ends before line {line}", hint=hint)
+    finally:
+        drop_queue(state.seg, state.paths, path)

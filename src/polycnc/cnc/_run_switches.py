@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from polycnc.cnc._path_axes import give_axes
+from polycnc.cnc._channel_axes import give_axes
 from polycnc.cnc._path_runner import PathRunner
 from polycnc.cnc._run_state import GOING, OVER
 from polycnc.cnc._stops import Breakpoint

@@ -38,23 +38,23 @@ class Completion:
 
 def hover(lines: list[str], line: int, character: int, dialect: Dialect) -> tuple[str, Span] | None:
     """Return what the G or M code at a place does, as Markdown, and where it stands; None where none stands."""
-    if not 0 <= line < len(lines):
+    if (found := _at(_CODE, lines, line, character, dialect)) is None:
         return None
-    for found in _CODE.finditer(words_only(lines[line], dialect)):
-        if found.start() <= character < found.end():
-            described = _described(found[1].upper(), float(found[2]), dialect)
-            return described, Span(line, found.start(), found.end())
-    return None
+    return _described(found[1].upper(), float(found[2]), dialect), Span(line, *found.span())
 
 
 def word(lines: list[str], line: int, character: int, dialect: Dialect) -> tuple[str, Span] | None:
     """Return the letter of the word at a place, and where it stands; None where no word stands."""
-    if not 0 <= line < len(lines):
-        return None
-    for found in _ADDRESS.finditer(words_only(lines[line], dialect)):
-        if found.start() <= character < found.end():
-            return found[1].upper(), Span(line, found.start(), found.end())
-    return None
+    found = _at(_ADDRESS, lines, line, character, dialect)
+    return None if found is None else (found[1].upper(), Span(line, *found.span()))
+
+
+def _at(
+    pattern: re.Pattern[str], lines: list[str], line: int, character: int, dialect: Dialect
+) -> re.Match[str] | None:
+    """Return what of a pattern stands at a place, comments and statements apart."""
+    words = words_only(lines[line], dialect) if 0 <= line < len(lines) else ""
+    return next((each for each in pattern.finditer(words) if each.start() <= character < each.end()), None)
 
 
 def completions(

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from polycnc.editor._place import words_only
 from polycnc.nc import Dialect, MAction
@@ -24,16 +24,18 @@ class Symbol:
     detail: str
     is_program: bool
     line: int
-    last: int
+    last: int = 0
     children: tuple[Symbol, ...] = ()
 
+    def with_end(self, end: int, children: list[Symbol]) -> Symbol:
+        """Return the same up to the line before `end`, with its parts."""
+        return replace(self, last=max(self.line, end - 1), children=tuple(children))
 
-@dataclass(frozen=True, slots=True)
-class _Mark:
-    name: str
-    detail: str
-    is_program: bool
-    line: int
+
+def sections(heads: list[Symbol], end: int) -> list[Symbol]:
+    """Return symbols of which each ends where the next one begins, the last one before line `end`."""
+    ends = [*(head.line for head in heads), end][1:]
+    return [head.with_end(after, []) for head, after in zip(heads, ends, strict=True)]
 
 
 def outline(lines: list[str], dialect: Dialect, survey: Survey | None = None) -> list[Symbol]:
@@ -47,7 +49,7 @@ def outline(lines: list[str], dialect: Dialect, survey: Survey | None = None) ->
     return _nested(sorted(marks.values(), key=lambda mark: mark.line), len(lines))
 
 
-def _time(operation: Operation, marks: dict[int, _Mark]) -> None:
+def _time(operation: Operation, marks: dict[int, Symbol]) -> None:
     """Give the mark at the beginning of an operation its times, one of its own where there is none."""
     number = operation.line - 1
     mark = marks.get(number)
@@ -57,41 +59,30 @@ def _time(operation: Operation, marks: dict[int, _Mark]) -> None:
     times = f"{time_text(operation.time_s)} (cuts {time_text(operation.cutting_s)})"
     comment = mark.detail if mark and mark.detail != name else ""
     tool = f"T{operation.tool}" if operation.name else ""
-    marks[number] = _Mark(name, " ".join(filter(None, (tool, comment, times))), False, number)
+    marks[number] = Symbol(name, " ".join(filter(None, (tool, comment, times))), False, number)
 
 
-def _nested(marks: list[_Mark], length: int) -> list[Symbol]:
+def _nested(marks: list[Symbol], length: int) -> list[Symbol]:
     heads = [number for number, mark in enumerate(marks) if mark.is_program]
     first = heads[0] if heads else len(marks)
     end = marks[first].line if heads else length
-    found = _changes(marks[:first], end)
+    found = sections(marks[:first], end)
     for head, after in zip(heads, [*heads, len(marks)][1:], strict=True):
         end = marks[after].line if after < len(marks) else length
-        found.append(_symbol(marks[head], end, _changes(marks[head + 1 : after], end)))
+        found.append(marks[head].with_end(end, sections(marks[head + 1 : after], end)))
     return found
 
 
-def _changes(marks: list[_Mark], end: int) -> list[Symbol]:
-    ends = [*(mark.line for mark in marks), end][1:]
-    return [_symbol(mark, last, []) for mark, last in zip(marks, ends, strict=True)]
-
-
-def _symbol(mark: _Mark, end: int, children: list[Symbol]) -> Symbol:
-    return Symbol(
-        mark.name, mark.detail, mark.is_program, mark.line, max(mark.line, end - 1), tuple(children)
-    )
-
-
-def _mark(number: int, line: str, dialect: Dialect) -> _Mark | None:
+def _mark(number: int, line: str, dialect: Dialect) -> Symbol | None:
     words = words_only(line, dialect)
     comment = _COMMENT.search(line)
     detail = (comment[1] or comment[2] or "").strip() if comment else ""
     if dialect.language == "rs274" and (sub := _SUB.match(line)):
-        return _Mark(f"O{sub[1]}", detail, True, number)
+        return Symbol(f"O{sub[1]}", detail, True, number)
     if program := _PROGRAM.match(words):
-        return _Mark(f"O{program[1]}", detail, True, number)
+        return Symbol(f"O{program[1]}", detail, True, number)
     tool = _TOOL.search(words)
     changes = any(dialect.m_action(int(code)) is MAction.TOOL_CHANGE for code in _M.findall(words))
     if changes or (tool and dialect.tool_word == "turret"):
-        return _Mark(f"T{tool[1]}" if tool else "tool change", detail, False, number)
+        return Symbol(f"T{tool[1]}" if tool else "tool change", detail, False, number)
     return None

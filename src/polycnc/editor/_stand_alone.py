@@ -7,7 +7,7 @@ from itertools import pairwise
 from polycnc.controllers.apci import sap
 from polycnc.editor._codes import Completion
 from polycnc.editor._names import VARIABLE, Name, Role
-from polycnc.editor._outline import Symbol
+from polycnc.editor._outline import Symbol, sections
 from polycnc.editor._place import Span
 
 _PARTS = ("procedure", "function", "event")
@@ -61,15 +61,11 @@ def sap_outline(text: str, length: int) -> list[Symbol]:
     """Return the procedures, functions and events of a program."""
     tokens = sap.tokens(sap.SourceText(text, ""), [])
     heads = [
-        (token.at.line - 1, f"{token.text} {after.text}")
+        Symbol(f"{token.text} {after.text}", "", True, token.at.line - 1)
         for token, after in pairwise(tokens)
         if token.word in _PARTS and after.kind == sap.NAME
     ]
-    ends = [*(line for line, _ in heads), length][1:]
-    return [
-        Symbol(name, "", True, line, max(line, end - 1))
-        for (line, name), end in zip(heads, ends, strict=True)
-    ]
+    return sections(heads, length)
 
 
 def _meaning(word: str) -> str:

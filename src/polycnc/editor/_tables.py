@@ -13,7 +13,7 @@ from pydantic.fields import FieldInfo
 from polycnc.editor._codes import Completion
 from polycnc.editor._kinds import Kind, model_of
 from polycnc.editor._names import VARIABLE, Name, Role
-from polycnc.editor._outline import Symbol
+from polycnc.editor._outline import Symbol, sections
 from polycnc.editor._place import MOST_LINE, Span
 from polycnc.errors import ConfigurationError, UsageError
 from polycnc.machine import MachineConfig, parse_toml, range_text, validate
@@ -131,15 +131,11 @@ _WORD = re.compile(r"\b[A-Z][A-Z0-9_]*\b")
 def table_outline(lines: list[str]) -> list[Symbol]:
     """Return the tables of a file."""
     heads = [
-        (number, header[1].strip())
+        Symbol(header[1].strip(), "", True, number)
         for number, line in enumerate(lines)
         if len(line) <= MOST_LINE and (header := _HEADER.match(line)) and header[1].strip()
     ]
-    ends = [*(number for number, _ in heads), len(lines)][1:]
-    return [
-        Symbol(name, "", True, number, max(number, end - 1))
-        for (number, name), end in zip(heads, ends, strict=True)
-    ]
+    return sections(heads, len(lines))
 
 
 def _table_at(lines: list[str], line: int) -> list[str]:

@@ -21,7 +21,7 @@ from polycnc.machine._config_tool import ToolConfig
 from polycnc.machine._io import IoBits, IoImage, scan_edges
 from polycnc.machine._machine import AxisState, Machine, MachineStatus, Reason
 from polycnc.machine._presets import DEFAULT_MACHINE, PRESETS, load_machine, parse_machine, preset_text
-from polycnc.machine._snapshot import Array, Plain, Snapshot, SnapshotError, arrays_of
+from polycnc.machine._snapshot import Array, Plain, Snapshot, SnapshotError, arrays_of, damaged_snapshot
 from polycnc.machine._state_walk import copied, described, is_same, restore_state
 from polycnc.machine._toml import (
     MOST_NESTING,
@@ -118,6 +118,7 @@ __all__ = [
     "arrays_of",
     "axis_rows",
     "copied",
+    "damaged_snapshot",
     "describe_machine",
     "described",
     "first_contact",

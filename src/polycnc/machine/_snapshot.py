@@ -70,11 +70,9 @@ class Snapshot:
         try:
             found = json.loads(self.beside, object_hook=_decoded)
         except (ValueError, TypeError, LookupError, OverflowError, RecursionError) as error:
-            raise SnapshotError(
-                f"the snapshot of a {self.device} is damaged: {error}", hint="use another one"
-            ) from error
+            raise damaged_snapshot(error, self.device) from error
         if not isinstance(found, dict):
-            raise SnapshotError(f"the snapshot of a {self.device} is damaged", hint="use another one")
+            raise damaged_snapshot(device=self.device)
         return found
 
     def moment(self, name: str) -> datetime:
@@ -86,9 +84,7 @@ class Snapshot:
         try:
             return datetime.fromisoformat(self.data()[name])
         except (KeyError, TypeError, ValueError) as error:
-            raise SnapshotError(
-                f"the snapshot of a {self.device} is damaged: {error}", hint="use another one"
-            ) from error
+            raise damaged_snapshot(error, self.device) from error
 
     def check(self, device: str, made_from: str, arrays: Iterable[Array]) -> None:
         """Make sure that this is a snapshot of a device like that one.
@@ -140,7 +136,7 @@ class Snapshot:
         if not content.startswith(MAGIC):
             raise SnapshotError("this is not a snapshot", hint="give what Snapshot.to_bytes has written")
         if len(content) < start:
-            raise _damaged("it is cut off")
+            raise damaged_snapshot("it is cut off")
         version, digest, size = _HEAD.unpack(content[len(MAGIC) : start])
         if version != VERSION:
             raise SnapshotError(
@@ -149,7 +145,7 @@ class Snapshot:
             )
         body = content[start:]
         if len(body) != size or hashlib.sha256(body).digest() != digest:
-            raise _damaged("its check sum is wrong")
+            raise damaged_snapshot("its check sum is wrong")
         try:
             return cls._read(zlib.decompress(body))
         except (
@@ -161,7 +157,7 @@ class Snapshot:
             struct.error,
             zlib.error,
         ) as error:
-            raise _damaged(str(error)) from error
+            raise damaged_snapshot(error) from error
 
     @classmethod
     def _read(cls, body: bytes) -> Self:
@@ -195,8 +191,10 @@ def fingerprint(text: str) -> str:
     return hashlib.sha256(text.encode()).hexdigest()
 
 
-def _damaged(why: str) -> SnapshotError:
-    return SnapshotError(f"the snapshot is damaged: {why}", hint="use another one")
+def damaged_snapshot(why: object = "", device: str = "") -> SnapshotError:
+    """Return the error of a snapshot, of a device of this kind, that is damaged."""
+    what = f"the snapshot of a {device} is damaged" if device else "the snapshot is damaged"
+    return SnapshotError(f"{what}: {why}" if why else what, hint="use another one")
 
 
 def _layout(array: Array) -> str:

@@ -74,13 +74,9 @@ def _put(value: Any, saved: Any) -> Any:
         for name, each in _named(saved):
             setattr(value, name, _put(getattr(value, name), each))
         return value
-    if isinstance(value, list | deque) and len(value) == len(saved):
-        parts = [_put(old, each) for old, each in zip(value, saved, strict=True)]
-        value.clear()
-        value.extend(parts)
-        return value
     if isinstance(value, list | deque):
-        parts = [_copied(each) for each in saved]
+        same = len(value) == len(saved)
+        parts = list(map(_put, value, saved)) if same else [_copied(each) for each in saved]
         value.clear()
         value.extend(parts)
         return value

@@ -16,7 +16,7 @@ from typing import Any, Literal, NamedTuple, TypeVar, Union, get_args, get_origi
 
 import numpy as np
 
-from polycnc.machine._snapshot import SnapshotError
+from polycnc.machine._snapshot import SnapshotError, damaged_snapshot
 
 _PLAIN = (type(None), bool, int, float, str, bytes)
 _TUPLE, _LIST, _DICT, _SET, _ARRAY = "()", "[]", "{}", "<>", "#"
@@ -40,10 +40,10 @@ class _Record:
 
     def made(self, values: list[Any]) -> Any:
         if len(values) != len(self.names):
-            raise _damaged(f"{self.cls.__name__} has {len(values)} fields")
+            raise damaged_snapshot(f"{self.cls.__name__} has {len(values)} fields")
         for name, value in zip(self.names, values, strict=True):
             if not _fits(value, _hints(self.cls)[name]):
-                raise _damaged(f"{self.cls.__name__} has a {name} that is none")
+                raise damaged_snapshot(f"{self.cls.__name__} has a {name} that is none")
         return self.cls(**dict(zip(self.names, values, strict=True)))
 
 
@@ -98,22 +98,22 @@ class Values:
         if plain is None or type(plain) in _PLAIN:
             return plain
         if not isinstance(plain, list) or not plain or not isinstance(plain[0], str):
-            raise _damaged("a value of no kind")
+            raise damaged_snapshot("a value of no kind")
         kind, *parts = plain
         if kind in self._enums:
             try:
                 return self._enums[kind](*parts)
             except (ValueError, TypeError) as error:
-                raise _damaged(str(error)) from error
+                raise damaged_snapshot(error) from error
         if kind == _ARRAY and len(parts) == 1 and isinstance(parts[0], np.ndarray):
             return parts[0]
         if kind == _DICT:
             if not all(isinstance(pair, list) and len(pair) == 2 for pair in parts):
-                raise _damaged("a pair is missing")
+                raise damaged_snapshot("a pair is missing")
             try:
                 return {self.value(key): self.value(each) for key, each in parts}
             except TypeError as error:
-                raise _damaged(str(error)) from error
+                raise damaged_snapshot(error) from error
         return self._collected(kind, [self.value(each) for each in parts])
 
     def _collected(self, kind: str, values: list[Any]) -> Any:
@@ -124,7 +124,7 @@ class Values:
                 return self._forms[kind][1].made(*values)
             return {_TUPLE: tuple, _LIST: list, _SET: frozenset}[kind](values)
         except (TypeError, ValueError, LookupError) as error:
-            raise _damaged(f"{kind}: {error}") from error
+            raise damaged_snapshot(f"{kind}: {error}") from error
 
 
 @cache
@@ -166,7 +166,3 @@ def _is_collection_of(value: object, origin: Any, inner: tuple[Any, ...]) -> boo
     if isinstance(value, list | AbstractSet) and len(inner) == 1:
         return all(_fits(each, inner[0]) for each in value)
     return True
-
-
-def _damaged(why: str) -> SnapshotError:
-    return SnapshotError(f"the snapshot is damaged: {why}", hint="use another one")

@@ -35,7 +35,7 @@ def called_codes(system: BoschSystem, dialect: Dialect, axes: Callable[[], Conta
         cancels=frozenset(code for code, action in actions.items() if action in _CANCELS),
         stands=frozenset(code for code, action in actions.items() if action in _STANDS),
         axes=axes,
-        rules=dialect.text_rules(),
+        rules=dialect.text,
     )
 
 

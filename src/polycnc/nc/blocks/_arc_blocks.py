@@ -200,7 +200,7 @@ def _framed_center(block: BlockContext, center: list[float], start: Point, p: in
     if not modal.whole[ARC_ABSOLUTE]:
         u, v = block.after.frame.vector(p, q, u, v)
         return [start[p] + u, start[q] + v]
-    point = block.after.frame.back((modal.position - modal.offset).tolist())
+    point = block.after.frame.back(block.after.here)
     point[p], point[q] = u, v
     found = block.after.frame.forward(point)
     return [found[axis] + float(modal.offset[axis]) for axis in (p, q)]

@@ -151,8 +151,7 @@ def _turn_turret(block: BlockContext, word: Word) -> Wait:
                 "Take another offset, or execute the program in that channel.",
                 word,
             )
-    letters = state.modal.letter_axis
-    shifts = {int(letters[ord(name) - ord("A")]): value for name, value in axes.items()}
+    shifts = {state.axis(name): value for name, value in axes.items()}
     state.place_zero(state.coordinates.with_length(shifts, int(offset != 0)))
     times = state.machine.times
     return Wait(times.tool_change_s if changes else 0.0, block.line, (f"T{number:04d}",))

@@ -18,14 +18,9 @@ from polycnc.nc.blocks._words import NUMBERS, BlockWords, WordSorter
 from polycnc.nc.dialect._dialect import Dialect
 from polycnc.nc.modal._actions import Group
 from polycnc.nc.modal._modal import (
-    AXIS_P,
-    AXIS_Q,
-    AXIS_R,
     MODULO_AXIS,
     MOTION_NONE,
     NO_AXIS,
-    PLANE,
-    PLANE_LETTERS,
 )
 from polycnc.nc.text._place import Place
 from polycnc.nc.text._program import ProgramText, TextRules
@@ -58,7 +53,7 @@ class ChannelRules:
         self.sorter = WordSorter(dialect)
         self.increment = dialect.increment
         self.stops_at_limits = dialect.soft_limits == "at_limit"
-        self.text_rules: TextRules = dialect.text_rules()
+        self.text_rules: TextRules = dialect.text
         self.low: list[float] = state.modal.low.tolist()
         self.high: list[float] = state.modal.high.tolist()
         self.modulo = [int(kind) == MODULO_AXIS for kind in state.modal.rotary]
@@ -134,11 +129,10 @@ class BlockContext:
         Raises:
             ProgramError: the machine lacks one of the first two; `what` needs them.
         """
-        whole = self.after.modal.whole
-        p, q, r = int(whole[AXIS_P]), int(whole[AXIS_Q]), int(whole[AXIS_R])
+        p, q, r = self.after.plane
         if NO_AXIS in (p, q):
             raise self.problem(
-                f"{what} in the plane {PLANE_LETTERS[int(whole[PLANE])][:2]}, which this machine does not have",
+                f"{what} in the plane {self.after.plane_letters[:2]}, which this machine does not have",
                 "Select a plane of the machine's axes with G17, G18 or G19.",
                 word,
             )

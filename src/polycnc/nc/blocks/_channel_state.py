@@ -22,7 +22,19 @@ from polycnc.nc.blocks._tip import TipShift
 from polycnc.nc.blocks._turning import Turning
 from polycnc.nc.modal._actions import Family
 from polycnc.nc.modal._frame import UNTURNED, Frame, Rotation
-from polycnc.nc.modal._modal import CHANGING, FEED_NUMBER, NO_AXIS, Modal, changing, copy_modal
+from polycnc.nc.modal._modal import (
+    AXIS_P,
+    AXIS_Q,
+    AXIS_R,
+    CHANGING,
+    FEED_NUMBER,
+    NO_AXIS,
+    PLANE,
+    PLANE_LETTERS,
+    Modal,
+    changing,
+    copy_modal,
+)
 from polycnc.nc.modal._modal_snapshot import ModalSnapshot, Spindle
 from polycnc.nc.modal._placement import NO_PLACEMENT, NO_SHIFTS, Placement
 
@@ -162,11 +174,35 @@ class ChannelState(Plain):
         angle = self.tables.turn_of(self.coordinates.work[0])
         if angle == 0.0 and self.frame.outer is None:
             return
-        letters = self.modal.letter_axis
-        x, y = (int(letters[ord(name) - ord("A")]) for name in "XY")
-        turn = Rotation(x, y, 0.0, 0.0, angle) if angle else None
+        turn = self.turn_of(self.coordinates.work[0])
         self.frame = replace(self.frame, outer=turn)
         self.place_zero(replace(self.coordinates, turn=turn))
+
+    def turn_of(self, name: str) -> Rotation | None:
+        """Return how a work offset turns the plane of X and Y; None if it does not."""
+        angle = self.tables.turn_of(name)
+        return Rotation(self.axis("X"), self.axis("Y"), 0.0, 0.0, angle) if angle else None
+
+    def axis(self, letter: str) -> int:
+        """Return the place of the axis that a letter names, NO_AXIS if there is none."""
+        return int(self.modal.letter_axis[ord(letter) - ord("A")])
+
+    @property
+    def plane(self) -> tuple[int, int, int]:
+        """The axes of the working plane: first, second, and normal; NO_AXIS for what the machine lacks."""
+        whole = self.modal.whole
+        return int(whole[AXIS_P]), int(whole[AXIS_Q]), int(whole[AXIS_R])
+
+    @property
+    def plane_letters(self) -> str:
+        """The letters of the working plane: first, second, and normal, whether the machine has them or not."""
+        return PLANE_LETTERS[int(self.modal.whole[PLANE])]
+
+    @property
+    def here(self) -> list[float]:
+        """The programmed position as seen from program zero (mm or degree)."""
+        found: list[float] = (self.modal.position - self.modal.offset).tolist()
+        return found
 
     def reference(self, number: int) -> tuple[float, ...]:
         """Return a reference position, 1 or 2 (mm or degree): the program's, else the machine's."""
@@ -186,7 +222,7 @@ class ChannelState(Plain):
     def length_said_again(self) -> int | None:
         """Return the H word that would change nothing, None where there is none."""
         coordinates, tool = self.coordinates, self.length_tool
-        axis = int(self.modal.letter_axis[ord("Z") - ord("A")])
+        axis = self.axis("Z")
         if coordinates.length_sign == 0 or tool == 0 or axis == NO_AXIS or not self.tables.has_tool(tool):
             return None
         data = self.tables.tool(tool)

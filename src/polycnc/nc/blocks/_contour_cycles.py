@@ -1,29 +1,23 @@
-"""Turning cycles about a contour, which stands in other blocks of the program: G70 to G73.
+"""Turning cycles about a contour, which other blocks of the program hold, named by sequence numbers: G70 to G73.
 
 Depths, retracts and tapers are radii, allowances along X diameters where X is one.
 """
 
 from __future__ import annotations
 
+import dataclasses
+import re
 from collections.abc import Sequence
 from dataclasses import replace
-from typing import Any
+from typing import Any, NamedTuple
 
 from polycnc.nc.blocks import _motion as motion
 from polycnc.nc.blocks import _turning_moves as turns
 from polycnc.nc.blocks._block import BlockContext
 from polycnc.nc.blocks._channel_state import ChannelState
-from polycnc.nc.blocks._contours import (
-    ContourProblem,
-    contour_blocks,
-    holds_cycle,
-    names_x_and_z,
-    numbered_block,
-    without_compensation,
-)
 from polycnc.nc.blocks._corner_blocks import refuse_open
 from polycnc.nc.blocks._handlers import carries_out
-from polycnc.nc.blocks._moves import Arc, Line, QueueItem, Spline
+from polycnc.nc.blocks._moves import Arc, GeometryError, Line, QueueItem, Spline
 from polycnc.nc.blocks._outcomes import NEXT
 from polycnc.nc.blocks._turning import (
     SAME_MM,
@@ -31,7 +25,6 @@ from polycnc.nc.blocks._turning import (
     Roughing,
     Step,
     Turning,
-    TurningError,
     exchanged,
     repeat,
     rough,
@@ -39,11 +32,13 @@ from polycnc.nc.blocks._turning import (
 from polycnc.nc.blocks._turning_pockets import rough_pockets
 from polycnc.nc.blocks._word_checks import refuse_unused
 from polycnc.nc.blocks._words import GWord, whole_number
-from polycnc.nc.modal._actions import Action
+from polycnc.nc.dialect._dialect import Dialect
+from polycnc.nc.modal._actions import Action, Family, of_family
 from polycnc.nc.modal._modal import length_scale
 from polycnc.nc.text._place import Place
+from polycnc.nc.text._program import ProgramText, TextRules
 from polycnc.nc.text._scan import STATEMENT
-from polycnc.nc.text._scan_plain import Block
+from polycnc.nc.text._scan_plain import Block, scan_block
 
 _DEPTHS = {Action.TURN_ROUGH: ("rough", "U"), Action.FACE_ROUGH: ("face", "W")}  # depth of a cut, and escape
 
@@ -184,7 +179,7 @@ def contour_cycle(
         else:
             relief = turning.relief
             steps = repeat(pieces, relief[:2], relief[2], allowance, first_rapid=first_rapid)
-    except TurningError as error:
+    except GeometryError as error:
         raise block.problem(f"G{g.code}: {error.what}", error.hint, g.word) from None
     return list(turns.items(block, steps, block.start))
 
@@ -218,3 +213,74 @@ def _leads_back(pieces: list[Piece], moves: Sequence[Line | Arc], *, along: int)
 
 def _or(value: float | None, other: float) -> float:
     return other if value is None else value
+
+
+MOST_CONTOUR_BLOCKS = 10_000
+_CYCLES = of_family(Family.TURNING_CYCLE, Family.CONTOUR_CYCLE)
+_COMPENSATION = (Action.COMP_LEFT, Action.COMP_RIGHT, Action.COMP_OFF)
+
+
+class ContourProblem(NamedTuple):
+    """What is wrong with a contour, and what to do."""
+
+    what: str
+    hint: str
+
+
+def numbered_block(text: ProgramText, number: int, begin: int, end: int, rules: TextRules) -> Block | None:
+    """Return the first block with a sequence number that begins between two offsets."""
+    pattern = re.compile(rb"^[ \t]*/?[ \t]*[Nn][ \t]*0*%d(?![0-9])" % number, re.MULTILINE)
+    match = pattern.search(text.content, begin, end)
+    if match is None:
+        return None
+    offset = match.start()
+    return scan_block(text, offset, text.position(offset).line, rules)
+
+
+def contour_blocks(
+    text: ProgramText, begin: Block | None, numbers: tuple[int, int], rules: TextRules
+) -> list[Block] | ContourProblem:
+    """Return the blocks from `begin`, the first of the two numbers, to the last one."""
+    first, last = numbers
+    if begin is None:
+        return ContourProblem(f"there is no block N{first}", "P names the first block of the contour.")
+    blocks = [begin]
+    while not (blocks[-1].flags & STATEMENT or _is_numbered(blocks[-1], last)):
+        after = text.next_line(blocks[-1].offset)
+        if after >= len(text) or len(blocks) > MOST_CONTOUR_BLOCKS:
+            return ContourProblem(
+                f"there is no block N{last} after N{first}", "Q names the last block of the contour."
+            )
+        blocks.append(scan_block(text, after, blocks[-1].line + 1, rules))
+    if blocks[-1].flags & STATEMENT:
+        return ContourProblem(
+            "a contour that is cut apart by statements is not supported yet",
+            "Write the contour in plain words.",
+        )
+    return blocks
+
+
+def _is_numbered(block: Block, number: int) -> bool:
+    return any(word.letter == "N" and word.value == number for word in block.words)
+
+
+def holds_cycle(block: Block, dialect: Dialect) -> bool:
+    """Tell whether a block of a contour holds a cycle itself."""
+    actions = {dialect.g_action(word.value) for word in block.words if word.letter == "G"}
+    return not actions.isdisjoint(_CYCLES)
+
+
+def without_compensation(block: Block, dialect: Dialect) -> Block:
+    """Return a block of a contour without the words of radius compensation."""
+    words = tuple(
+        word
+        for word in block.words
+        if word.letter != "G" or dialect.g_action(word.value) not in _COMPENSATION
+    )
+    return dataclasses.replace(block, words=words)
+
+
+def names_x_and_z(block: Block, dialect: Dialect) -> bool:
+    """Tell whether a block names both axes of the contour, by positions or ways."""
+    names = {dialect.incremental.get(word.letter, word.letter) for word in block.words}
+    return {"X", "Z"} <= names

@@ -8,11 +8,11 @@ from polycnc.errors import ProgramError
 from polycnc.nc.blocks import _limits as limits
 from polycnc.nc.blocks._block import BlockContext
 from polycnc.nc.blocks._channel_state import ChannelState
-from polycnc.nc.blocks._corners import Corner, CornerError
+from polycnc.nc.blocks._corners import Corner
 from polycnc.nc.blocks._corners import joined as corner_moves
-from polycnc.nc.blocks._moves import Arc, Line, QueueItem
+from polycnc.nc.blocks._moves import Arc, GeometryError, Line, QueueItem
 from polycnc.nc.blocks._words import NUMBERS, GWord, code_text
-from polycnc.nc.modal._modal import AXIS_P, AXIS_Q, AXIS_R, NO_AXIS, length_scale
+from polycnc.nc.modal._modal import NO_AXIS, length_scale
 
 
 def no_straight_move(block: BlockContext, corner: Corner) -> ProgramError:
@@ -55,13 +55,12 @@ def joined(block: BlockContext, items: list[QueueItem]) -> list[QueueItem]:
         return items
     moves = [*items, *([holds.move] if holds else [])]
     after = moves[0] if moves else None
-    whole = block.after.modal.whole
-    plane = int(whole[AXIS_P]), int(whole[AXIS_Q]), int(whole[AXIS_R])
+    plane = block.after.plane
     if not isinstance(after, Line) or after.rapid or NO_AXIS in plane[:2]:
         raise no_straight_move(block, corner)
     try:
         found: list[QueueItem] = list(corner_moves(corner, after, plane))
-    except CornerError as error:
+    except GeometryError as error:
         raise block.problem(error.what, error.hint, None) from None
     for item in found:
         if isinstance(item, Arc):

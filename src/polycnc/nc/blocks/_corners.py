@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, replace
 
-from polycnc.nc.blocks._moves import Arc, Line, Move, Point
+from polycnc.nc.blocks._moves import Arc, GeometryError, Line, Move, Point
 
 _STRAIGHT_RAD = 1e-9
 
@@ -23,37 +23,28 @@ class Corner:
     word: str
 
 
-class CornerError(Exception):
-    """A corner that does not fit: what is wrong, and what to do."""
-
-    def __init__(self, what: str, hint: str) -> None:
-        super().__init__(what)
-        self.what = what
-        self.hint = hint
-
-
 def joined(corner: Corner, after: Line, plane: tuple[int, int, int]) -> list[Move]:
     """Return the held move, the corner, and the move after it, in a plane (axes first, second, normal).
 
     Raises:
-        CornerError: the corner is larger than a move, or the moves turn back on the spot.
+        GeometryError: the corner is larger than a move, or the moves turn back on the spot.
     """
     p, q = plane[:2]
     at = corner.move.end
     back, back_length = _way(at, corner.move.start, p, q)
     ahead, ahead_length = _way(at, after.end, p, q)
     if back_length == 0.0 or ahead_length == 0.0:
-        raise CornerError(
+        raise GeometryError(
             f"{corner.word} beside a move that does not move in the plane", "Write the corner without it."
         )
     angle = math.acos(max(-1.0, min(1.0, back[0] * ahead[0] + back[1] * ahead[1])))
     if angle < _STRAIGHT_RAD:
-        raise CornerError(f"{corner.word} where the path turns back", "Remove it.")
+        raise GeometryError(f"{corner.word} where the path turns back", "Remove it.")
     if angle > math.pi - _STRAIGHT_RAD:
         return [corner.move, after]
     reach = corner.size_mm / math.tan(0.5 * angle) if corner.rounds else corner.size_mm
     if reach > min(back_length, ahead_length) * (1.0 + 1e-12):
-        raise CornerError(
+        raise GeometryError(
             f"{corner.word} needs {reach:.6g} mm of both moves, and one has {min(back_length, ahead_length):.6g} mm",
             "Give a smaller one.",
         )

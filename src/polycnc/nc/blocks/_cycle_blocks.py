@@ -32,16 +32,11 @@ from polycnc.nc.blocks._words import GWord, dwell_seconds, whole_number
 from polycnc.nc.modal._actions import Family, Group
 from polycnc.nc.modal._modal import (
     ABSOLUTE,
-    AXIS_P,
-    AXIS_Q,
-    AXIS_R,
     FEED,
     FEED_INVERSE_TIME,
     FEED_MODE,
     FEED_PER_REVOLUTION,
     NO_AXIS,
-    PLANE,
-    PLANE_LETTERS,
     length_scale,
 )
 from polycnc.nc.text._scan_plain import Word
@@ -60,7 +55,7 @@ def begin(block: BlockContext, g: GWord) -> None:
     cycle = block.after.cycle
     initial = cycle.initial
     if not cycle.action:
-        axis = int(block.after.modal.whole[AXIS_R])
+        axis = block.after.plane[2]
         initial = float(block.after.modal.position[axis]) if axis != NO_AXIS else 0.0
     if _strict(block) and g.word.value != cycle.code:
         cycle = replace(cycle, words=CycleWords())
@@ -75,10 +70,10 @@ def moves(block: BlockContext) -> list[QueueItem]:
         ProgramError: a word is missing or does not make sense, a limit would be passed.
     """
     whole, words = block.after.modal.whole, block.words
-    axes = (int(whole[AXIS_P]), int(whole[AXIS_Q]), int(whole[AXIS_R]))
+    axes = block.after.plane
     code = f"G{block.after.cycle.code:g}"
     if NO_AXIS in axes:
-        letters = PLANE_LETTERS[int(whole[PLANE])]
+        letters = block.after.plane_letters
         raise block.problem(
             f"{code} needs the axes {', '.join(letters)} here, and the machine lacks one of them",
             "Select a plane of the machine's axes with G17, G18 or G19.",
@@ -99,11 +94,10 @@ def moves(block: BlockContext) -> list[QueueItem]:
     if further:
         place = replace(place, further_mm=further)
     try:
-        settings = block.dialect.cycle_settings()
         levels = _with_pitch(block, cycle)
         if block.dialect.cycles.levels_as_written and not whole[ABSOLUTE]:
             levels = levels.absolute(place.initial_mm)
-        steps = expand_cycle(cycle.action, levels, place, settings, code=code)
+        steps = expand_cycle(cycle.action, levels, place, block.dialect.cycles, code=code)
     except CycleError as error:
         at = words.first(*_LETTERS_OF_REASON.get(error.reason, "")) or block.move_word
         raise block.problem(error.what, error.hint, at) from None
@@ -182,6 +176,7 @@ def _place(
         spindle=_SPINDLES[direction],
         spindle_rpm=feeds.rpm(block, start, start),
         rigid=rigid,
+        taps_either_way="G84 with M4" not in block.dialect.refuses,
     )
 
 

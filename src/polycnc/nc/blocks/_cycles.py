@@ -17,7 +17,7 @@ from enum import Enum, auto
 from typing import Literal, TypeAlias
 
 from polycnc.errors import ProgramError
-from polycnc.nc.dialect._cycle_settings import CycleSettings
+from polycnc.nc.dialect._cycle_settings import Cycles
 
 # More pecks in one hole than this are a mistyped Q, not a hole.
 MOST_PECKS = 100_000
@@ -100,6 +100,7 @@ class CyclePlace:
     `further_mm` says where they are.
     Levels are on the drilling axis: `initial_mm` before the first cycle block, `level_mm` now. `retract` is
     G98 (initial) or G99 (r). `rigid`: a tapping cycle turns the spindle itself, and leaves it at rest.
+    `taps_either_way`: G84 taps a left-hand thread with M4.
     """
 
     hole_mm: tuple[float, float]
@@ -111,6 +112,7 @@ class CyclePlace:
     spindle_rpm: float = 0.0
     rigid: bool = False
     further_mm: tuple[tuple[float, float], ...] = ()
+    taps_either_way: bool = True
 
 
 class CycleError(ProgramError):
@@ -140,7 +142,7 @@ class _Hole:
     dwell_s: float
     tap_feed_mm_s: float
     rigid: bool
-    settings: CycleSettings
+    settings: Cycles
 
     @property
     def fed(self) -> float:
@@ -289,7 +291,7 @@ def expand_cycle(
     action: str,
     words: CycleWords,
     place: CyclePlace,
-    settings: CycleSettings | None = None,
+    settings: Cycles | None = None,
     *,
     code: str = "",
 ) -> list[CycleStep]:
@@ -302,7 +304,7 @@ def expand_cycle(
         CycleError: a word is missing or does not make sense, or the spindle must turn and does not.
     """
     row = dataclasses.replace(_ROWS[action], code=code or _ROWS[action].code)
-    hole = _settled(row, words, place, settings or CycleSettings())
+    hole = _settled(row, words, place, settings or Cycles())
     steps: list[CycleStep] = []
     level = place.level_mm
     for number in range(words.repeats):
@@ -343,7 +345,7 @@ def _moved(hole: _Hole, first: float, second: float) -> _Hole:
     return dataclasses.replace(hole, first=first, second=second, shifted=shifted)
 
 
-def _settled(row: _Row, words: CycleWords, place: CyclePlace, settings: CycleSettings) -> _Hole:
+def _settled(row: _Row, words: CycleWords, place: CyclePlace, settings: Cycles) -> _Hole:
     """Check the words of a cycle and return its numbers at the first hole."""
     code = row.code
     if words.repeats < 0:
@@ -361,7 +363,7 @@ def _settled(row: _Row, words: CycleWords, place: CyclePlace, settings: CycleSet
     dwell = words.dwell_s or 0.0
     if dwell < 0.0:
         raise CycleError(f"{code} dwells {dwell:.6g} s", reason="dwell", hint="Give P 0 or more.")
-    _check_spindle(row, place, settings)
+    _check_spindle(row, place)
     first, second = place.hole_mm
     shift = _shift_of(code, words, settings) if "shift" in row.needs else (0.0, 0.0)
     return _Hole(
@@ -401,7 +403,7 @@ def _check_upwards(code: str, top: float, r: float, place: CyclePlace) -> None:
         )
 
 
-def _check_spindle(row: _Row, place: CyclePlace, settings: CycleSettings) -> None:
+def _check_spindle(row: _Row, place: CyclePlace) -> None:
     if "spindle" not in row.needs:
         return
     if place.spindle == "stopped":
@@ -409,7 +411,7 @@ def _check_spindle(row: _Row, place: CyclePlace, settings: CycleSettings) -> Non
             f"{row.code} needs a turning spindle", reason="spindle_stopped", hint="Program M3 or M4 first."
         )
     is_right = "tap" in row.needs and "left" not in row.needs
-    if is_right and place.spindle == "reverse" and not settings.taps_either_way:
+    if is_right and place.spindle == "reverse" and not place.taps_either_way:
         raise CycleError(
             f"{row.code} taps a right-hand thread, and the spindle turns counter-clockwise (M4)",
             reason="spindle_direction",
@@ -423,7 +425,7 @@ def _check_spindle(row: _Row, place: CyclePlace, settings: CycleSettings) -> Non
         )
 
 
-def _pecks(row: _Row, words: CycleWords, settings: CycleSettings) -> bool:
+def _pecks(row: _Row, words: CycleWords, settings: Cycles) -> bool:
     """Tell whether the cycle goes in by pecks: where it must, and where a tapping cycle has a Q that it uses."""
     return "peck" in row.needs or ("tap" in row.needs and settings.peck_tap != "none" and bool(words.peck_mm))
 
@@ -445,11 +447,12 @@ def _peck_of(code: str, words: CycleWords, depth: float) -> float:
     return peck
 
 
-def _shift_of(code: str, words: CycleWords, settings: CycleSettings) -> tuple[float, float]:
+def _shift_of(code: str, words: CycleWords, settings: Cycles) -> tuple[float, float]:
     if words.shift_mm is not None:
         return words.shift_mm
     amount = _required(words.peck_mm, f"{code} needs a shift (I and J, or Q)", "shift_missing")
-    return amount * settings.shift_direction[0], amount * settings.shift_direction[1]
+    first, second = settings.shift_direction
+    return amount * first, amount * second
 
 
 def _back_of(code: str, words: CycleWords, bottom: float, r: float) -> float:

@@ -59,7 +59,7 @@ def rpm(block: BlockContext, start: Point, end: Point) -> float:
     if not spindle.surface_speed:
         return spindle.speed
     modal = block.after.modal
-    x = int(modal.letter_axis[ord("X") - ord("A")])
+    x = block.after.axis("X")
     # Twice the mean radius, from the axis of the workpiece: program zero.
     diameter = 0.0 if x == NO_AXIS else abs(start[x] + end[x] - 2.0 * float(modal.offset[x]))
     top = min(block.after.machine.spindle.max_rpm, spindle.clamp)
@@ -69,7 +69,7 @@ def rpm(block: BlockContext, start: Point, end: Point) -> float:
 def clamp_points(block: BlockContext, start: Point, end: Point) -> list[Point]:
     """Return where on a straight cut the spindle's speed reaches its clamp."""
     spindle, modal = block.after.spindle, block.after.modal
-    x = int(modal.letter_axis[ord("X") - ord("A")])
+    x = block.after.axis("X")
     if not spindle.surface_speed or x == NO_AXIS or modal.whole[FEED_MODE] != FEED_PER_REVOLUTION:
         return []
     way = end[x] - start[x]

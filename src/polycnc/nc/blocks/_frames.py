@@ -13,14 +13,13 @@ from polycnc.nc.blocks._tool_offsets import set_tool
 from polycnc.nc.blocks._turned_offsets import other_frame, zero_that_reads
 from polycnc.nc.blocks._turning_data import set_turning_data
 from polycnc.nc.blocks._word_checks import refuse_rest
-from polycnc.nc.blocks._words import GWord, code_text, whole_number
+from polycnc.nc.blocks._words import GWord, check_angle, code_text, whole_number
 from polycnc.nc.modal._actions import Action
 from polycnc.nc.modal._frame import Polar, Rotation
 from polycnc.nc.modal._modal import ABSOLUTE, NO_AXIS
 
 LARGEST_FACTOR = 1000.0
 LARGEST_OFFSET_NUMBER = 999
-LARGEST_ANGLE = 360_000.0
 _FACTORS = "IJK"
 _TOOL_FIELDS = {1: "length_mm", 10: "length_mm", 11: "wear_length_mm", 12: "radius_mm", 13: "wear_radius_mm"}
 
@@ -68,8 +67,8 @@ def rotate_off(block: BlockContext, _: GWord) -> None:
 def polar(block: BlockContext, g: GWord) -> None:
     """Read the words of the plane as radius and angle."""
     p, q, _ = block.plane(f"G{g.code}", g.word)
-    frame, modal = block.after.frame, block.after.modal
-    here = frame.back((modal.position - modal.offset).tolist())
+    frame = block.after.frame
+    here = frame.back(block.after.here)
     at = Polar((0.0, 0.0), math.hypot(here[p], here[q]), math.degrees(math.atan2(here[q], here[p])))
     block.after.frame = replace(frame, polar=at)
 
@@ -85,10 +84,7 @@ def _rotation(block: BlockContext, g: GWord) -> Rotation:
     angle = block.words.length("R")
     if angle is None:
         raise block.problem(f"G{g.code} without an angle", "Add R and the angle in degrees.", g.word)
-    if not math.isfinite(angle) or abs(angle) > 360_000.0:
-        raise block.problem(
-            f"the angle R{code_text(angle)} is too large", "Write up to a turn.", block.words.first("R")
-        )
+    check_angle(angle, block.words.first("R"), block.problem)
     values = motion.axis_words(block)
     if wrong := [axis for axis in values if axis not in (p, q)]:
         name = block.after.axis_names[wrong[0]]
@@ -97,15 +93,14 @@ def _rotation(block: BlockContext, g: GWord) -> Rotation:
             "Select another plane before, or remove the word.",
             block.words.first(name),
         )
-    modal = block.after.modal
-    center = (modal.position - modal.offset).tolist()
-    if not modal.whole[ABSOLUTE]:
+    center = block.after.here
+    if not block.after.modal.whole[ABSOLUTE]:
         values = {}  # the centre is where the tool stands
     return Rotation(p, q, values.get(p, center[p]), values.get(q, center[q]), angle)
 
 
 def _scales(block: BlockContext, g: GWord) -> dict[int, tuple[float, float]]:
-    here = (block.after.modal.position - block.after.modal.offset).tolist()
+    here = block.after.here
     centers = motion.axis_words(block)
     if not block.after.modal.whole[ABSOLUTE]:
         centers = {axis: here[axis] + value for axis, value in centers.items()}
@@ -121,7 +116,7 @@ def _scales(block: BlockContext, g: GWord) -> dict[int, tuple[float, float]]:
         factors = dict.fromkeys(centers or linear, common)
     elif letters:
         for letter, name in zip(_FACTORS, "XYZ", strict=True):
-            axis = int(block.after.modal.letter_axis[ord(name) - ord("A")])
+            axis = block.after.axis(name)
             if letter in letters:
                 factor = _factor(block, letter)
                 if axis != NO_AXIS:
@@ -200,9 +195,8 @@ def set_work_zero(block: BlockContext, g: GWord) -> None:
     name = f"G{53 + number}" if number else active
     values = motion.named_axes(block, g)
     if table == 20:
-        modal, tables = block.after.modal, block.after.tables
-        here = (modal.position - modal.offset).tolist()
-        old = tables.work_offset(active) if active else (0.0,) * len(here)
+        here = block.after.here
+        old = block.after.tables.work_offset(active) if active else (0.0,) * len(here)
         values = {axis: old[axis] + here[axis] - value for axis, value in values.items()}
     refuse_rest(block, g)
     block.after.tables.set_offset(name, values)
@@ -235,13 +229,11 @@ def set_tables(block: BlockContext, g: GWord) -> None:
 
 
 def _set_system(block: BlockContext, g: GWord, table: int, name: str) -> None:
-    state, modal, tables = block.after, block.after.modal, block.after.tables
+    state, tables = block.after, block.after.tables
     values = motion.axis_words(block)
     angle = block.words.value("R")
-    if angle is not None and not abs(angle) <= LARGEST_ANGLE:
-        raise block.problem(
-            f"the angle R{angle:g} is too large", "Write up to a turn.", block.words.first("R")
-        )
+    if angle is not None:
+        check_angle(angle, block.words.first("R"), block.problem)
     if table == 20:
         if angle is not None:
             raise block.problem(f"G{g.code} L20 with R", "Turn with L2.", block.words.first("R"))
@@ -250,7 +242,7 @@ def _set_system(block: BlockContext, g: GWord, table: int, name: str) -> None:
                 f"G{g.code} L20 while positions are turned or scaled", "Cancel that first.", g.word
             )
         values = zero_that_reads(state, name, values)
-    if angle is not None and NO_AXIS in (modal.letter_axis[ord("X") - 65], modal.letter_axis[ord("Y") - 65]):
+    if angle is not None and NO_AXIS in (state.axis("X"), state.axis("Y")):
         raise block.problem("the machine has no plane XY to turn", "Remove R.", block.words.first("R"))
     refuse_rest(block, g)
     tables.set_offset(name, values)
@@ -286,7 +278,7 @@ def _set_tool(block: BlockContext, g: GWord, field: str, number: int) -> None:
         raise block.problem(f"G{g.code} without R", "Add R and the value.", g.word)
     if number == 0:
         raise block.problem("tool offset 0 is always zero", "Write P1 and up.", block.words.first("P"))
-    axis = int(block.after.modal.letter_axis[ord("Z") - ord("A")])
+    axis = block.after.axis("Z")
     value *= 1.0 if axis == NO_AXIS else float(block.after.modal.scale[axis])
     if not block.after.modal.whole[ABSOLUTE]:
         value += getattr(block.after.tables.tool(number), field)

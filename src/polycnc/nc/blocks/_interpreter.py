@@ -16,20 +16,19 @@ from polycnc.errors import ProgramError
 from polycnc.nc.blocks._block import BlockContext, ChannelRules
 from polycnc.nc.blocks._channel_state import ChannelState
 from polycnc.nc.blocks._compensation_errors import CompensationError
-from polycnc.nc.blocks._limits import check_path
+from polycnc.nc.blocks._limits import check_path, up_to_limits
 from polycnc.nc.blocks._messages import Messages
 from polycnc.nc.blocks._moves import Arc, Line, QueueItem, Stop, Wait
-from polycnc.nc.blocks._not_blocks import NotBlocks
 from polycnc.nc.blocks._outcomes import NEXT, Continuation, Outcome, Problem
 from polycnc.nc.blocks._queue import QueueWriter
 from polycnc.nc.blocks._steps import take_steps
-from polycnc.nc.blocks._travel import up_to_limits
 from polycnc.nc.dialect._dialect import Dialect
 from polycnc.nc.modal._actions import Family
 from polycnc.nc.modal._frame import UNTURNED
 from polycnc.nc.modal._modal import FEED, FEED_MODE, FEED_NUMBER, FEED_PER_MINUTE, MOTION, ORDINARY
 from polycnc.nc.modal._modal_snapshot import ModalSnapshot
 from polycnc.nc.records._block_records import AGAIN
+from polycnc.nc.text._not_words import statements, syntax_hint
 from polycnc.nc.text._place import Place
 from polycnc.nc.text._program import ProgramText
 from polycnc.nc.text._scan import STATEMENT
@@ -345,3 +344,44 @@ def _tips(state: ChannelState, pushed: Iterable[QueueItem]) -> Iterator[QueueIte
 def _stops(error: ProgramError) -> bool:
     """Tell whether a move is carried out up to the soft limit that it would pass."""
     return error.limit is not None and error.limit[2]
+
+
+_LANGUAGES = (
+    "Name the dialect of the control that they are for, like --dialect fanuc for custom macros or bosch for CPL, "
+    "or post the program without them."
+)
+
+
+class Unread(ProgramError):  # noqa: N818  it is one like any
+    """A statement that the language of the dialect has left, as it refused the program."""
+
+
+class NotBlocks:
+    """Say what is wrong with lines that are no words; statements of a language make one error a program."""
+
+    def __init__(self, dialect: Dialect) -> None:
+        self._name = dialect.name
+        self._has_language = dialect.language != "none"
+        self._rules = dialect.text
+        self._known: tuple[ProgramText, int, int] | None = None  # a program, its first statement, how many
+
+    def problem(self, text: ProgramText, block: Block) -> ProgramError:
+        """Return what is wrong with a line."""
+        wrong = syntax_hint(
+            text.content[block.offset : text.line_end(block.offset)].decode("latin-1"), self._rules
+        )
+        if wrong is not None:
+            position = text.position(block.offset + wrong.place)
+            return ProgramError(wrong.what, position=position, hint=wrong.hint)
+        if self._has_language:
+            what = f"dialect '{self._name}' reads no statement like this"
+            return Unread(what, position=text.line_position(block.line), hint="Check the line.")
+        if self._known is None or self._known[0] is not text:
+            self._known = (text, *statements(text, self._rules))
+        _, first, count = self._known
+        blocks = "1 block has them" if count <= 1 else f"{count} blocks have them, this is the first"
+        return ProgramError(
+            f"dialect '{self._name}' reads no variables, expressions or program flow ({blocks})",
+            position=text.line_position(first or block.line),
+            hint=_LANGUAGES,
+        )

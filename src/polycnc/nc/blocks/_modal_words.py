@@ -45,7 +45,7 @@ def set_units(block: BlockContext, g: GWord) -> None:
 def set_diameters(block: BlockContext, g: GWord) -> None:
     """Carry out what X words are: diameters or radii."""
     modal = block.after.modal
-    axis = int(modal.letter_axis[ord("X") - ord("A")])
+    axis = block.after.axis("X")
     if axis == NO_AXIS:
         raise block.problem(f"G{g.code} on a machine without an X axis", "Remove it.", g.word)
     set_diameter(modal, axis, g.action is Action.DIAMETERS)

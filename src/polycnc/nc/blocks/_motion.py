@@ -18,8 +18,6 @@ from polycnc.nc.modal._actions import Family, Group
 from polycnc.nc.modal._frame import UNTURNED, Polar
 from polycnc.nc.modal._modal import (
     ABSOLUTE,
-    AXIS_P,
-    AXIS_Q,
     LARGEST,
     MOTION,
     MOTION_ARC_CW,
@@ -142,7 +140,7 @@ def _framed_target(block: BlockContext, axis_values: dict[int, float], absolute:
     offset: list[float] = modal.offset.tolist()
     programmed = frame.back([a - b for a, b in zip(point, offset, strict=True)])
     changed = set(axis_values)
-    plane = int(modal.whole[AXIS_P]), int(modal.whole[AXIS_Q])
+    plane = block.after.plane[:2]
     if frame.polar is not None and NO_AXIS not in plane and changed & set(plane):
         polar = _polar(block, frame.polar, axis_values, programmed, absolute)
         block.after.frame = replace(frame, polar=polar)
@@ -167,7 +165,7 @@ def _polar(
     block: BlockContext, polar: Polar, axis_values: dict[int, float], programmed: list[float], absolute: bool
 ) -> Polar:
     modal = block.after.modal
-    p, q = int(modal.whole[AXIS_P]), int(modal.whole[AXIS_Q])
+    p, q, _ = block.after.plane
     if p in axis_values:
         center = (0.0, 0.0) if absolute else (programmed[p], programmed[q])
         polar = replace(polar, center=center, radius=axis_values[p])

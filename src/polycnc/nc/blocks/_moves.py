@@ -13,6 +13,15 @@ from typing import TypeAlias
 Point: TypeAlias = tuple[float, ...]
 
 
+class GeometryError(Exception):
+    """Moves that cannot be made of what a block says: what is wrong, and what to do."""
+
+    def __init__(self, what: str, hint: str) -> None:
+        super().__init__(what)
+        self.what = what
+        self.hint = hint
+
+
 class Stop(StrEnum):
     """Why preparation waits until the path has come to a point."""
 

@@ -146,8 +146,8 @@ def set_position(block: BlockContext, g: GWord) -> None:
         raise block.problem(
             f"G{g.code} without an axis", "Name the axes and the positions they shall read.", g.word
         )
-    state, modal = block.after, block.after.modal
-    here = state.frame.back((modal.position - modal.offset).tolist())
+    state = block.after
+    here = state.frame.back(state.here)
     if values:
         ways = {axis: here[axis] - value for axis, value in values.items()}
         state.place_zero(state.coordinates.with_shift(ways))

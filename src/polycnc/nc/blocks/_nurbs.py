@@ -16,7 +16,7 @@ from polycnc.nc.blocks._moves import Line, Spline
 from polycnc.nc.blocks._nurbs_curve import Nurbs, nurbs_cubics
 from polycnc.nc.blocks._words import GWord
 from polycnc.nc.modal._actions import Action, Family, Group
-from polycnc.nc.modal._modal import AXIS_P, AXIS_Q, MOTION, MOTION_NONE
+from polycnc.nc.modal._modal import MOTION, MOTION_NONE
 
 LEAST_ORDER, GREATEST_ORDER = 3, 16
 _BESIDE = (Group.MOTION, Group.DWELL)
@@ -132,7 +132,7 @@ def _end(block: BlockContext, g: GWord) -> list[Line | Spline]:
             g.word,
         )
     whole = state.modal.whole
-    plane = int(whole[AXIS_P]), int(whole[AXIS_Q])
+    plane = state.plane[:2]
     end = list(block.start)
     end[plane[0]], end[plane[1]], _ = curve.points[-1]
     moves = splines.parts(block, tuple(end), plane, nurbs_cubics(curve.points, curve.order))

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import replace
 from typing import Any
 
@@ -11,10 +10,10 @@ import numpy as np
 from polycnc.nc.blocks import _motion as motion
 from polycnc.nc.blocks._block import BlockContext
 from polycnc.nc.blocks._handlers import carries_out
-from polycnc.nc.blocks._words import GWord, code_text, whole_number
+from polycnc.nc.blocks._words import GWord, check_angle, code_text, whole_number
 from polycnc.nc.modal._actions import Action
 from polycnc.nc.modal._frame import Rotation
-from polycnc.nc.modal._modal import AXIS_P, AXIS_Q, AXIS_R, NO_AXIS, PLANE, PLANE_LETTERS, PLANE_XY, set_plane
+from polycnc.nc.modal._modal import AXIS_P, AXIS_Q, AXIS_R, NO_AXIS, PLANE_LETTERS, PLANE_XY, set_plane
 from polycnc.nc.modal._placement import Placement, Vector, total
 
 LARGEST_FACTOR = 1000.0
@@ -87,8 +86,7 @@ def _put(block: BlockContext, placement: Placement) -> None:
     """Take a placement over; the axes stay where they are."""
     state = block.after
     axes = len(state.axis_names)
-    whole = state.modal.whole
-    plane = int(whole[AXIS_P]), int(whole[AXIS_Q])
+    plane = state.plane[:2]
     turn = placement.turn(plane)
     rotation = None
     if placement.angle_deg:
@@ -137,13 +135,9 @@ def _angle(block: BlockContext) -> float | None:
     angle = None if "R" in block.after.axis_names else block.words.value("R")
     if angle is None:
         return None
-    if not math.isfinite(angle) or abs(angle) > 360_000.0:
-        raise block.problem(
-            f"the angle R{code_text(angle)} is too large", "Write up to a turn.", block.words.first("R")
-        )
-    whole = block.after.modal.whole
-    if NO_AXIS in (whole[AXIS_P], whole[AXIS_Q]):
-        letters = PLANE_LETTERS[int(whole[PLANE])][:2]
+    check_angle(angle, block.words.first("R"), block.problem)
+    if NO_AXIS in block.after.plane[:2]:
+        letters = block.after.plane_letters[:2]
         raise block.problem(
             f"the machine has no plane {letters} to turn", "Remove R.", block.words.first("R")
         )

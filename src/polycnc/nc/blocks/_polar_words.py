@@ -26,13 +26,13 @@ def polar_words(block: BlockContext) -> dict[int, float]:
     word = words.first(*POLAR_LETTERS)
     if code := words.g.get(Group.NON_MODAL):
         raise block.problem(f"a polar position beside G{code.code}", "It belongs to a motion.", word)
-    x, y = (int(modal.letter_axis[ord(name) - ord("A")]) for name in "XY")
+    x, y = state.axis("X"), state.axis("Y")
     if modal.whole[PLANE] != PLANE_XY or NO_AXIS in (x, y):
         raise block.problem("a polar position outside the plane of X and Y", "Select G17 first.", word)
     if axis := words.first("X", "Y"):
         raise block.problem(f"a polar position and {axis.letter} in one block", "Write one of them.", axis)
     radius, angle_deg = words.value("@"), words.value("^")
-    here = state.frame.back((modal.position - modal.offset).tolist())
+    here = state.frame.back(state.here)
     old_radius = math.hypot(here[x], here[y])
     old_deg = math.degrees(math.atan2(here[y], here[x]))
     scale = length_scale(modal)
@@ -57,7 +57,7 @@ def further_polar_places(block: BlockContext, count: int) -> tuple[tuple[float, 
     There are none where the block holds positions, or no polar ones; the words are not taken.
     """
     modal, words = block.after.modal, block.words
-    x, y = (int(modal.letter_axis[ord(name) - ord("A")]) for name in "XY")
+    x, y = block.after.axis("X"), block.after.axis("Y")
     if modal.whole[ABSOLUTE] or words.first(*POLAR_LETTERS) is None or NO_AXIS in (x, y):
         return ()
     out, turn = (words.by_letter[each].value if each in words.by_letter else 0.0 for each in POLAR_LETTERS)

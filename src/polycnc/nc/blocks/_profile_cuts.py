@@ -5,8 +5,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
+from polycnc.nc.blocks._moves import GeometryError
 from polycnc.nc.blocks._profiles import NEAR, SHORT, Part, View, goes_on, moved_off, with_corners
-from polycnc.nc.blocks._turning import MOST_PASSES, TurningError
+from polycnc.nc.blocks._turning import MOST_PASSES
 
 ALL, WITHOUT_POCKETS, POCKETS = 0, 1, 2
 """What roughing cuts: 71, 71.1 and 71.2."""
@@ -38,7 +39,7 @@ def finish(profile: Sequence[Part], first: float, last: float, passes: int) -> l
     """Return passes along a profile whose first part leads to it: the first `first` off it, the last one `last`.
 
     Raises:
-        TurningError: the profile goes back, or cannot be moved off so far.
+        GeometryError: the profile goes back, or cannot be moved off so far.
     """
     view = View().falling(profile[1:])
     if not goes_on(view.seen(part) for part in profile[1:]):
@@ -58,7 +59,7 @@ def rough(profile: Sequence[Part], numbers: Roughing, *, along_x: bool) -> list[
     """Return the cuts down to a profile whose first part leads to it, along Z or `along_x`.
 
     Raises:
-        TurningError: the profile goes back, or cannot be moved off so far.
+        GeometryError: the profile goes back, or cannot be moved off so far.
     """
     view = View(turned=along_x).falling(profile)
     path = moved_off(_entered(with_corners([view.seen(part) for part in profile])), numbers.allowance)
@@ -71,7 +72,7 @@ def _entered(path: list[Part]) -> list[Part]:
     """Return a path whose first part never leads up along Z.
 
     Raises:
-        TurningError: another part does.
+        GeometryError: another part does.
     """
     way = path[0].end - path[0].start
     if way.real > 0.0:
@@ -82,7 +83,7 @@ def _entered(path: list[Part]) -> list[Part]:
 
 def _check(path: Sequence[Part]) -> None:
     if not goes_on(path):
-        raise TurningError("the profile goes back along the cuts", "Write it so that it never does.")
+        raise GeometryError("the profile goes back along the cuts", "Write it so that it never does.")
 
 
 def _seen_back(view: View, cut: Cut) -> Cut:
@@ -152,7 +153,7 @@ class _Cutter:
                 x -= self._depth
             else:
                 place = found
-        raise TurningError(
+        raise GeometryError(
             f"more than {MOST_PASSES} cuts", "Check I, and that the profile is closed to the top."
         )
 
@@ -198,7 +199,7 @@ class _Cutter:
         if x >= end.imag:
             crossings = part.crossings(x)
             if not crossings:
-                raise TurningError("the profile lies above where its cuts begin", "Check X and Z.")
+                raise GeometryError("the profile lies above where its cuts begin", "Check X and Z.")
             end = complex(crossings[0], x)
         self._go(end, rapid=place == 0)
         return False
@@ -229,7 +230,7 @@ class _Cutter:
             if part.end.imag + NEAR < part.start.imag:
                 return True
             if abs(self.at - part.start) > NEAR:
-                raise TurningError("the tool is not at its profile", "Check D, U and W.")
+                raise GeometryError("the tool is not at its profile", "Check D, U and W.")
             self._go(part.end)
             return False
         if not part.ccw:

@@ -11,17 +11,15 @@ from collections.abc import Iterator
 from polycnc.nc.blocks import _turning_moves as turns
 from polycnc.nc.blocks._block import BlockContext
 from polycnc.nc.blocks._handlers import carries_out
-from polycnc.nc.blocks._moves import QueueItem
+from polycnc.nc.blocks._moves import GeometryError, QueueItem
 from polycnc.nc.blocks._profile_cuts import Cut, Roughing, finish, rough
 from polycnc.nc.blocks._profiles import NEAR, Part
-from polycnc.nc.blocks._turning import Piece, Step, TurningError
+from polycnc.nc.blocks._turning import Piece, Step
 from polycnc.nc.blocks._words import GWord, whole_number
 from polycnc.nc.modal._actions import Action, Family
 from polycnc.nc.modal._modal import (
     ABSOLUTE,
     ARC_ABSOLUTE,
-    AXIS_P,
-    AXIS_Q,
     MOTION,
     MOTION_ARC_CCW,
     MOTION_ARC_CW,
@@ -64,7 +62,7 @@ def cut_profile(block: BlockContext, g: GWord) -> list[QueueItem]:
     if len(parts) > 1:
         try:
             cuts += _cuts(block, g, parts, begin)
-        except TurningError as error:
+        except GeometryError as error:
             raise block.problem(f"G{g.code}: {error.what}", error.hint, g.word) from None
     return list(_items(block, g, cuts))
 
@@ -75,7 +73,7 @@ def _check(block: BlockContext, g: GWord) -> None:
         turns.refuse_compensation(block)
     if state.frame.active:
         raise block.problem(f"G{g.code} in turned coordinates", "Take a work offset without R.", g.word)
-    if {int(state.modal.whole[AXIS_P]), int(state.modal.whole[AXIS_Q])} != set(turns.axes(block)):
+    if set(state.plane[:2]) != set(turns.axes(block)):
         raise block.problem(f"G{g.code} outside the plane of X and Z", "Select G18 first.", g.word)
 
 
@@ -110,7 +108,7 @@ def _cuts(block: BlockContext, g: GWord, parts: list[Part], begin: complex) -> l
     if g.action is Action.PROFILE_FINISH:
         last, passes = _or(words.value("E"), 0.0), int(_or(words.value("P"), 1.0))
         if passes > _MOST_PASSES:
-            raise TurningError(f"{passes} passes", f"Write up to {_MOST_PASSES}.")
+            raise GeometryError(f"{passes} passes", f"Write up to {_MOST_PASSES}.")
         return finish(parts, distance, last, passes)
     if depth is not None and depth.value <= 0.0:
         raise block.problem("the depth of a cut is not above zero", "Write a positive I.", depth)

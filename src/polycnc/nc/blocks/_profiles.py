@@ -11,7 +11,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
 
-from polycnc.nc.blocks._turning import TurningError
+from polycnc.nc.blocks._moves import GeometryError
 
 NEAR, SHORT, GAP = 1e-6, 1e-3, 1e-2
 """Lengths below which points are one, a part is none, and a gap is none."""
@@ -126,7 +126,7 @@ def with_corners(profile: Sequence[Part]) -> list[Part]:
     """Return a profile whose chamfers and rounded corners have their lengths.
 
     Raises:
-        TurningError: one does not fit.
+        GeometryError: one does not fit.
     """
     parts = list(profile)
     for at in range(1, len(parts) - 1):
@@ -141,7 +141,7 @@ def _with_corner(before: Part, corner: Part, after: Part) -> list[Part]:
         if (one.end - two.start).real <= GAP:
             break
     else:
-        raise TurningError("a corner of the profile does not fit", "Make A or C smaller.")
+        raise GeometryError("a corner of the profile does not fit", "Make A or C smaller.")
     one, two = _joined(one, two)
     center = (one.end + two.start) / 2.0
     start, end = one.beside(-aside).end, two.beside(-aside).start
@@ -155,11 +155,11 @@ def moved_off(profile: Sequence[Part], distance: float) -> list[Part]:
     """Return a profile moved off by a distance to the side that its first part, the way to it, comes from.
 
     Raises:
-        TurningError: it has nothing left.
+        GeometryError: it has nothing left.
     """
     first, parts = profile[0], list(profile[1:])
     if not parts:
-        raise TurningError("the profile has one move only", "Write the way to its beginning first.")
+        raise GeometryError("the profile has one move only", "Write the way to its beginning first.")
     approach, across = first.end - first.start, parts[-1].start - first.start
     if across != 0.0 and (approach / across).imag < 0.0:
         distance = -distance
@@ -168,12 +168,12 @@ def moved_off(profile: Sequence[Part], distance: float) -> list[Part]:
         rounds += 1
         least = min([part.size / 2.0 for part in parts] + [abs(distance - gone)])
         if rounds > _MOST_ROUNDS:
-            raise TurningError("the profile cannot be moved off so far", "Make D smaller.")
+            raise GeometryError("the profile cannot be moved off so far", "Make D smaller.")
         step = math.copysign(least, distance)
         parts = [part for each in parts if (part := each.beside(step)).size >= SHORT]
         parts = _shortened(_bridged(parts, step, distance > 0.0))
         if not parts:
-            raise TurningError("nothing of the profile is left so far off", "Make D smaller.")
+            raise GeometryError("nothing of the profile is left so far off", "Make D smaller.")
         gone = distance if least == abs(distance - gone) else gone + step
     for at, (one, two) in enumerate(pairwise(parts)):
         middle = (one.end + two.start) / 2.0
@@ -231,7 +231,7 @@ def _meeting_of_lines(one: Part, two: Part) -> complex:
     along = (two.start - two.end).conjugate() / abs(two.start - two.end)
     start, end = (one.start - two.end) * along, (one.end - two.end) * along
     if start.imag == end.imag:
-        raise TurningError("two lines of the profile meet nowhere", "Make D smaller, or one line of them.")
+        raise GeometryError("two lines of the profile meet nowhere", "Make D smaller, or one line of them.")
     share = start.imag / (start.imag - end.imag)
     return (start + share * (end - start)) / along + two.end
 

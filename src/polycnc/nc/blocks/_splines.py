@@ -19,7 +19,7 @@ from polycnc.nc.blocks._block import BlockContext
 from polycnc.nc.blocks._moves import Feed, Line, Point, Spline
 from polycnc.nc.blocks._words import GWord
 from polycnc.nc.modal._actions import Action, Group
-from polycnc.nc.modal._modal import AXIS_P, AXIS_Q, NO_AXIS, PLANE, PLANE_XY, length_scale
+from polycnc.nc.modal._modal import NO_AXIS, PLANE, PLANE_XY, length_scale
 from polycnc.nc.text._scan_plain import Word
 
 XY = tuple[float, float]
@@ -50,7 +50,7 @@ def plane_of(block: BlockContext, word: Word | None) -> tuple[int, int]:
         ProgramError: another plane than XY, radius compensation.
     """
     state, whole = block.after, block.after.modal.whole
-    plane = int(whole[AXIS_P]), int(whole[AXIS_Q])
+    plane = state.plane[:2]
     if whole[PLANE] != PLANE_XY or NO_AXIS in plane:
         raise block.problem("a spline outside the plane XY", "Select it with G17 first.", word)
     if state.side or state.compensation.active:
@@ -131,9 +131,8 @@ def _way(block: BlockContext, first: str, second: str) -> XY | None:
             block.words.first(there),
         )
     scale = length_scale(block.after.modal)
-    u, v = u * scale, v * scale
-    whole = block.after.modal.whole
-    return block.after.frame.vector(int(whole[AXIS_P]), int(whole[AXIS_Q]), u, v)
+    p, q, _ = block.after.plane
+    return block.after.frame.vector(p, q, u * scale, v * scale)
 
 
 def parts(

@@ -11,6 +11,7 @@ from collections.abc import Callable
 from dataclasses import replace
 from typing import TypeAlias
 
+from polycnc.errors import ProgramError
 from polycnc.machine import LONGEST_BLOCK_S
 from polycnc.nc.blocks import _auxiliary as auxiliary
 from polycnc.nc.blocks import _limits as limits
@@ -19,12 +20,10 @@ from polycnc.nc.blocks._block import BlockContext
 from polycnc.nc.blocks._codes import CODES, MOTION_MODES
 from polycnc.nc.blocks._corner_blocks import joined, no_straight_move
 from polycnc.nc.blocks._handlers import refuse_compensation
-from polycnc.nc.blocks._held_words import held_words
 from polycnc.nc.blocks._motion import axis_word_left, note_position
 from polycnc.nc.blocks._moves import Line, QueueItem
 from polycnc.nc.blocks._nurbs import refuse_others
-from polycnc.nc.blocks._outcomes import JUMPS
-from polycnc.nc.blocks._program_words import outcome
+from polycnc.nc.blocks._outcomes import JUMPS, Continuation, Outcome
 from polycnc.nc.blocks._tool_words import compensate_length, compensate_radius
 from polycnc.nc.blocks._word_checks import (
     leave_out,
@@ -33,8 +32,8 @@ from polycnc.nc.blocks._word_checks import (
     refuse_unused,
     take_parameters,
 )
-from polycnc.nc.blocks._words import code_text
-from polycnc.nc.modal._actions import Action, Family, Group
+from polycnc.nc.blocks._words import code_text, whole_number
+from polycnc.nc.modal._actions import Action, Family, Group, MAction
 from polycnc.nc.modal._modal import (
     EXACT_STOP,
     FEED,
@@ -48,6 +47,7 @@ from polycnc.nc.modal._modal import (
     STOPS_SUPPRESSED,
 )
 from polycnc.nc.text._scan import MESSAGE
+from polycnc.nc.text._scan_plain import Word
 from polycnc.units import MM_PER_INCH
 
 Step: TypeAlias = Callable[[BlockContext], None]
@@ -55,6 +55,12 @@ Step: TypeAlias = Callable[[BlockContext], None]
 _OF_ONE_BLOCK = (Family.SPLINE, Family.CURVE)
 _UNCOMPENSATED = (Family.FRAME, Family.PLACING)
 _STATED = (Group.MOTION, Group.DISTANCE)
+_OUTCOMES = {
+    MAction.PROGRAM_END: Outcome(Continuation.END),
+    MAction.PROGRAM_STOP: Outcome(Continuation.STOP),
+    MAction.OPTIONAL_STOP: Outcome(Continuation.STOP),
+    MAction.SUB_RETURN: Outcome(Continuation.RETURN),
+}
 
 
 def words(block: BlockContext) -> None:
@@ -75,9 +81,36 @@ def words(block: BlockContext) -> None:
 
 
 def ends(block: BlockContext) -> None:
-    """Say how the program goes on."""
-    if block.words.m:
-        block.outcome = outcome(block)
+    """Say how the program goes on, by the M codes."""
+    for m in block.words.m:
+        if m.action is MAction.SUB_CALL:
+            block.outcome = _call(block, f"M{m.code}", m.word)
+            return
+        if m.action is MAction.SUB_RETURN and "P" in block.words.by_letter:
+            raise block.problem(
+                f"M{m.code} P: a return to a block number cannot be carried out",
+                "Remove P, or call another sub-program.",
+                block.words.by_letter["P"],
+            )
+        if m.action in _OUTCOMES:
+            block.outcome = _OUTCOMES[m.action]
+            return
+
+
+def _call(block: BlockContext, code: str, at: Word) -> Outcome:
+    p_word, l_word = block.words.take("P"), block.words.take("L")
+    if p_word is None:
+        raise block.problem(f"{code} without a sub-program", "Add P and the number of the sub-program.", at)
+    program = whole_number(p_word, "the number of a program", block.problem)
+    repeats = 1 if l_word is None else whole_number(l_word, "a number of repetitions", block.problem)
+    if l_word is None and program > 9999 and block.dialect.sub_program.repeats_in_p:
+        repeats, program = divmod(program, 10_000)
+    if problem := block.rules.call_problem(program, block.text, p_word.place):
+        what, hint, number = problem
+        error = block.problem(what, hint, p_word)
+        error.code = number
+        raise error
+    return Outcome(Continuation.CALL, program, repeats)
 
 
 def code(*groups: Group) -> Step:
@@ -162,9 +195,27 @@ def radius(block: BlockContext) -> None:
 
 
 def held(block: BlockContext) -> None:
-    """Refuse what radius compensation holds back on this control."""
-    if block.dialect.held_by_compensation:
-        held_words(block)
+    """Refuse codes that the dialect holds back with radius compensation; G40 in the same block comes first.
+
+    Raises:
+        ProgramError: there is one.
+    """
+    held = block.dialect.held_by_compensation
+    if not held or not (block.after.side or block.before.side):
+        return
+    for m in block.words.m:
+        if block.before.side and f"M{m.code}" in held:
+            raise _refusal(block, f"M{m.code}", m.word)
+    for group, g in block.words.g.items():
+        if group not in held:
+            continue
+        twice = group is Group.RADIUS_COMPENSATION
+        if (twice and g.value and block.before.side) or (not twice and block.after.side):
+            raise _refusal(block, f"G{g.code}", g.word)
+
+
+def _refusal(block: BlockContext, code: str, word: Word) -> ProgramError:
+    return block.problem(f"{code} while radius compensation is active", "Cancel it with G40 first.", word)
 
 
 def rest(block: BlockContext) -> None:

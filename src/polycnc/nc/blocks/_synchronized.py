@@ -10,7 +10,6 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from polycnc.errors import ProgramError
-from polycnc.nc.blocks import _feeds as feeds
 from polycnc.nc.blocks import _limits as limits
 from polycnc.nc.blocks import _motion as motion
 from polycnc.nc.blocks import _turning_moves as turns
@@ -68,30 +67,8 @@ def moves(block: BlockContext) -> list[QueueItem]:
 
 def _feed(block: BlockContext, start: Point, end: Point, lead: float) -> Feed:
     """Return the feed of a move that goes `lead` mm along its path with each turn of the spindle."""
-    spindle = block.after.spindle
-    rpm = feeds.rpm(block, start, start) if spindle.direction else 0.0
-    if rpm <= 0.0:
-        raise block.problem(
-            "a thread with the spindle at rest", "Start it with S and M3 or M4 first.", block.move_word
-        )
-    if spindle.surface_speed:
-        raise block.problem(
-            "a thread with constant surface speed (G96)",
-            "The spindle would turn faster with each pass: select G97 first.",
-            block.move_word,
-        )
-    speed = lead * rpm / SECONDS_PER_MINUTE
-    ways = [abs(b - a) for a, b in zip(start, end, strict=True)]
-    whole = math.hypot(*ways)
-    for axis, way in zip(block.after.machine.axes, ways, strict=True):
-        if whole and speed * way / whole > axis.vmax * (1.0 + 1e-9):
-            raise block.problem(
-                f"the thread needs {speed * way / whole * SECONDS_PER_MINUTE:.0f} mm/min of axis {axis.name}, "
-                f"which has {axis.vmax * SECONDS_PER_MINUTE:.0f}",
-                "Turn the spindle slower.",
-                block.move_word,
-            )
-    return Feed(speed_mm_s=speed, with_spindle=True)
+    rpm = turns.thread_rpm(block, start, "The spindle would turn faster with each pass")
+    return turns.with_spindle(block, start, end, lead * rpm / SECONDS_PER_MINUTE)
 
 
 # ------------------------------------------------------------------ G76

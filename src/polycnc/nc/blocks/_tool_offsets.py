@@ -45,10 +45,8 @@ def tool_data(block: BlockContext, tool: int) -> ToolConfig:
 
 def offsets_of(state: ChannelState, tool: ToolConfig) -> dict[int, float]:
     """Return what a tool shifts each axis by (mm)."""
-    letters = state.modal.letter_axis
     axes = {"X": tool.x_mm + tool.wear_x_mm, "Y": tool.y_mm, "Z": tool.length_mm + tool.wear_length_mm}
-    found = {int(letters[ord(name) - ord("A")]): value for name, value in axes.items()}
-    return {axis: value for axis, value in found.items() if axis != NO_AXIS}
+    return {axis: value for name, value in axes.items() if (axis := state.axis(name)) != NO_AXIS}
 
 
 def shift_by_tool(block: BlockContext, g: GWord) -> None:

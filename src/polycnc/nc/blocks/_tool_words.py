@@ -43,7 +43,7 @@ def _compensate_along_z(block: BlockContext, g: GWord | None) -> None:
     if block.dialect.h_compensates and g is None and block.words.by_letter["H"].value == 0.0:
         sign = 0
     h_word = block.words.take("H")
-    axis = int(block.after.modal.letter_axis[ord("Z") - ord("A")])
+    axis = state.axis("Z")
     if axis == NO_AXIS:
         if sign and of_another_channel("Z") in block.after.axis_names:
             raise block.problem(
@@ -137,7 +137,6 @@ def _check_plane(block: BlockContext, tip: int, word: Word | None) -> None:
 
 def _tip(block: BlockContext, data: ToolConfig, radius: float) -> tuple[tuple[int, float], ...]:
     """Return the way from the middle of a tool's nose to its tip, by axis; none for a tool without a tip."""
-    letters = block.after.modal.letter_axis
     ways = zip("XZ", TIPS[data.tip], strict=True)
-    named = [(int(letters[ord(name) - ord("A")]), way * radius) for name, way in ways]
+    named = [(block.after.axis(name), way * radius) for name, way in ways]
     return tuple(named) if any(way for _, way in named) else ()

@@ -18,14 +18,6 @@ def other_frame(state: ChannelState) -> bool:
     return bool(frame.mirrors or frame.scales or frame.rotation or frame.polar)
 
 
-def turn_of(state: ChannelState, name: str) -> Rotation | None:
-    """Return how a work offset turns the plane of X and Y; None if it does not."""
-    angle = state.tables.turn_of(name)
-    letters = state.modal.letter_axis
-    x, y = (int(letters[ord(letter) - ord("A")]) for letter in "XY")
-    return Rotation(x, y, 0.0, 0.0, angle) if angle else None
-
-
 def _turned(turn: Rotation | None, vector: Sequence[float], sign: float = 1.0) -> list[float]:
     found = list(vector)
     if turn is not None:
@@ -43,7 +35,7 @@ def _shift(state: ChannelState) -> list[float]:
 
 def zero_that_reads(state: ChannelState, name: str, values: Mapping[int, float]) -> dict[int, float]:
     """Return the work offset with which the present position reads `values` (mm or degree)."""
-    turn, shift = turn_of(state, name), _shift(state)
+    turn, shift = state.turn_of(name), _shift(state)
     within = _turned(state.coordinates.turn, shift)
     rest = state.modal.offset - state.coordinates.first_offset(state.tables) - within
     base = (state.modal.position - rest).tolist()
@@ -62,7 +54,7 @@ def tool_that_reads(
 
     `tool` is what it shifts them by now; the shift of the program counts where it is `shifted`.
     """
-    turn = turn_of(state, name)
+    turn = state.turn_of(name)
     shift = _shift(state) if shifted else [0.0] * len(state.modal.position)
     zero: Sequence[float] = state.tables.work_offset(name)
     if name == state.coordinates.work[0]:

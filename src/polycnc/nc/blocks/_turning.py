@@ -11,6 +11,8 @@ import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
+from polycnc.nc.blocks._moves import GeometryError
+
 SAME_MM = 1e-9
 MOST_PASSES = 100_000
 
@@ -72,15 +74,6 @@ class Turning:
     allowance: float = 0.0
 
 
-class TurningError(Exception):
-    """A cycle that cannot be run with its numbers: what is wrong, and what to do."""
-
-    def __init__(self, what: str, hint: str) -> None:
-        super().__init__(what)
-        self.what = what
-        self.hint = hint
-
-
 @dataclass(frozen=True, slots=True)
 class Roughing:
     """The numbers of G71 and G72: depth of a cut, escape, allowances along X (a radius) and Z."""
@@ -113,32 +106,32 @@ def rough(contour: Sequence[Piece], numbers: Roughing, *, first_rapid: bool) -> 
     are the infeeds. The others rise steadily from there, in X and along Z.
 
     Raises:
-        TurningError: The contour does not, or a number makes no sense.
+        GeometryError: The contour does not, or a number makes no sense.
     """
     start = contour[0].start
     rest = [piece.shifted(numbers.allowance) for piece in contour[1:]]
     if not rest:
-        raise TurningError("the contour has one block only", "Give it two blocks and more.")
+        raise GeometryError("the contour has one block only", "Give it two blocks and more.")
     if abs(contour[0].end[1] - start[1]) > SAME_MM:
-        raise TurningError(
+        raise GeometryError(
             "the first block of the contour moves the axis along which is roughed",
             "Let it go to the first diameter (G71) or the first Z (G72) only.",
         )
     x_way = _sign(contour[0].end[0] - start[0])
     z_way = _sign(contour[-1].end[1] - contour[0].end[1])
     if z_way == 0.0:
-        raise TurningError("the contour comes back to where it begins", "End it where the part ends.")
+        raise GeometryError("the contour comes back to where it begins", "End it where the part ends.")
     if x_way == 0.0:
-        raise TurningError("the contour leaves nothing to rough", "Start away from it.")
+        raise GeometryError("the contour leaves nothing to rough", "Start away from it.")
     _check_steady(rest, x_way, z_way)
     check_top(contour, x_way)
     if numbers.depth_mm <= 0.0:
-        raise TurningError("the depth of a cut is not above zero", "Give U (G71) or W (G72) above 0.")
+        raise GeometryError("the depth of a cut is not above zero", "Give U (G71) or W (G72) above 0.")
     corner = _add(start, numbers.allowance)
     bottom = rest[0].start[0]
     count = math.ceil((abs(bottom - corner[0]) - SAME_MM) / numbers.depth_mm) - 1
     if count > MOST_PASSES:
-        raise TurningError(f"roughing would take {count} passes", "Give a larger depth of a cut.")
+        raise GeometryError(f"roughing would take {count} passes", "Give a larger depth of a cut.")
     steps = [Step(corner, rapid=True)] if corner != start else []
     for number in range(1, count + 1):
         level = corner[0] + x_way * number * numbers.depth_mm
@@ -170,7 +163,7 @@ def _check_steady(pieces: Sequence[Piece], x_way: float, z_way: float) -> None:
         points = [piece.start, *extremes(piece), piece.end]
         for before, after in itertools.pairwise(points):
             if (after[0] - before[0]) * x_way > SAME_MM or (after[1] - before[1]) * z_way < -SAME_MM:
-                raise TurningError(
+                raise GeometryError(
                     "the contour turns back, and its first block names one axis",
                     "Name both in it (add W0 for G71, U0 for G72): then pockets are cut.",
                 )
@@ -180,13 +173,13 @@ def check_top(contour: Sequence[Piece], x_way: float) -> None:
     """Refuse a contour that goes in Z beyond where the cycle begins: the way back would cross the part.
 
     Raises:
-        TurningError: It does.
+        GeometryError: It does.
     """
     top = contour[0].start[0]
     for piece in contour:
         out = min((x - top) * x_way for x, _ in (piece.start, *extremes(piece), piece.end))
         if out < -SAME_MM and abs(piece.end[1] - piece.start[1]) > SAME_MM:
-            raise TurningError("the contour comes out beyond the start", "Start further away from it.")
+            raise GeometryError("the contour comes out beyond the start", "Start further away from it.")
 
 
 def extremes(piece: Piece) -> list[Point]:
@@ -240,10 +233,10 @@ def repeat(
     """Return the steps of a contour that is cut `passes` times, from `relief` (x, z) away down to the allowance.
 
     Raises:
-        TurningError: A number makes no sense.
+        GeometryError: A number makes no sense.
     """
     if not 1 <= passes <= MOST_PASSES:
-        raise TurningError(f"{passes} passes cannot be", "Give R and the number of passes from 1 up.")
+        raise GeometryError(f"{passes} passes cannot be", "Give R and the number of passes from 1 up.")
     steps: list[Step] = []
     for number in range(passes):
         share = 1.0 - number / (passes - 1) if passes > 1 else 0.0
@@ -276,19 +269,19 @@ def peck(start: Point, numbers: Pecking) -> list[Step]:
     """Return the steps of pecking along Z at one X or several, from `start` and back to it.
 
     Raises:
-        TurningError: A number makes no sense.
+        GeometryError: A number makes no sense.
     """
     across, depth = numbers.last - start[0], numbers.bottom - start[1]
     if abs(across) > SAME_MM and numbers.step_mm <= 0.0:
-        raise TurningError(
+        raise GeometryError(
             "several grooves without the step between them", "Give P (G74) or Q (G75) above 0."
         )
     if numbers.peck_mm < 0.0 or numbers.relief_mm < 0.0 or numbers.retract_mm < 0.0:
-        raise TurningError("a negative peck, retract or relief", "Write it from 0 up.")
+        raise GeometryError("a negative peck, retract or relief", "Write it from 0 up.")
     grooves = _stops(start[0], numbers.last, numbers.step_mm)
     levels = _stops(start[1], numbers.bottom, numbers.peck_mm)[1:] if depth else []
     if len(grooves) * len(levels) > MOST_PASSES:
-        raise TurningError("more pecks than a groove is worth", "Give larger steps.")
+        raise GeometryError("more pecks than a groove is worth", "Give larger steps.")
     way, side = _sign(depth), _sign(across)
     steps: list[Step] = []
     for number, x in enumerate(grooves):
@@ -314,7 +307,7 @@ def _stops(begin: float, end: float, step: float) -> list[float]:
         return [begin, end]
     count = math.ceil((abs(way) - SAME_MM) / step)
     if count > MOST_PASSES:
-        raise TurningError(f"{count} steps are more than a groove is worth", "Give a larger step.")
+        raise GeometryError(f"{count} steps are more than a groove is worth", "Give a larger step.")
     return [begin + _sign(way) * step * number for number in range(count)] + [end]
 
 
@@ -373,13 +366,13 @@ def thread_depths(numbers: Threading) -> list[float]:
     """Return the depth of every pass: equal areas of chip, but each at least `least_mm` deeper than the one before.
 
     Raises:
-        TurningError: A number makes no sense.
+        GeometryError: A number makes no sense.
     """
     if numbers.height_mm <= 0.0 or numbers.first_mm <= 0.0:
-        raise TurningError("height or first depth of the thread is not above zero", "Give P and Q above 0.")
+        raise GeometryError("height or first depth of the thread is not above zero", "Give P and Q above 0.")
     rough = numbers.height_mm - numbers.allowance_mm
     if numbers.allowance_mm < 0.0 or rough <= 0.0:
-        raise TurningError("the allowance is no part of the thread's height", "Give R from 0 up, below P.")
+        raise GeometryError("the allowance is no part of the thread's height", "Give R from 0 up, below P.")
     depths: list[float] = []
     depth, number = 0.0, 1
     while depth < rough - SAME_MM:
@@ -387,7 +380,7 @@ def thread_depths(numbers: Threading) -> list[float]:
         depths.append(depth)
         number += 1
         if number > MOST_PASSES:
-            raise TurningError("more passes than a thread is worth", "Give larger depths.")
+            raise GeometryError("more passes than a thread is worth", "Give larger depths.")
     return depths + [numbers.height_mm] * numbers.finishing
 
 
@@ -396,7 +389,7 @@ def threads(start: Point, numbers: Threading) -> list[Step]:
     way = _sign(numbers.end[1] - start[1])
     inwards = _sign(numbers.end[0] + numbers.taper - start[0])
     if way == 0.0 or inwards == 0.0:
-        raise TurningError("the thread has no length, or lies where the tool is", "Check X and Z.")
+        raise GeometryError("the thread has no length, or lies where the tool is", "Check X and Z.")
     chamfer = numbers.chamfer_leads * numbers.lead_mm
     slope = math.tan(math.radians(0.5 * numbers.angle_deg))
     steps: list[Step] = []

@@ -11,10 +11,10 @@ from polycnc.nc.blocks import _motion as motion
 from polycnc.nc.blocks import _turning_moves as turns
 from polycnc.nc.blocks._block import BlockContext
 from polycnc.nc.blocks._messages import CODE_SYSTEM
-from polycnc.nc.blocks._moves import Line, Point, QueueItem
+from polycnc.nc.blocks._moves import GeometryError, Line, Point, QueueItem
 from polycnc.nc.blocks._synchronized import SYNCHRONIZED
 from polycnc.nc.blocks._synchronized import moves as synchronized
-from polycnc.nc.blocks._turning import MOST_PASSES, SAME_MM, Step, TurningError, box, exchanged
+from polycnc.nc.blocks._turning import MOST_PASSES, SAME_MM, Step, box, exchanged
 from polycnc.nc.blocks._words import GWord
 from polycnc.nc.modal._actions import Action, Family, Group
 from polycnc.nc.modal._modal import MOTION, MOTION_LINEAR
@@ -74,7 +74,7 @@ def moves(block: BlockContext) -> list[QueueItem]:
         else:
             chamfer = turning.chamfer * turns.lead(block) if turning.motion == "thread_cycle" else 0.0
             steps = box(start, to, turning.taper, thread=turning.motion == "thread_cycle", chamfer=chamfer)
-    except TurningError as error:
+    except GeometryError as error:
         raise block.problem(error.what, error.hint, block.move_word) from None
     return list(turns.items(block, steps, end))
 

@@ -12,8 +12,8 @@ from polycnc.nc.blocks import _motion as motion
 from polycnc.nc.blocks import _turning_moves as turns
 from polycnc.nc.blocks._block import BlockContext
 from polycnc.nc.blocks._handlers import carries_out
-from polycnc.nc.blocks._moves import QueueItem
-from polycnc.nc.blocks._turning import Pecking, Step, Threading, TurningError, exchanged, peck, threads
+from polycnc.nc.blocks._moves import GeometryError, QueueItem
+from polycnc.nc.blocks._turning import Pecking, Step, Threading, exchanged, peck, threads
 from polycnc.nc.blocks._words import GWord, whole_number
 from polycnc.nc.modal._actions import Action
 
@@ -44,7 +44,7 @@ def cycle(block: BlockContext, g: GWord) -> list[QueueItem]:
             steps = peck(start, Pecking(end[z], end[x], q, p, retract, relief))
         else:
             steps = exchanged(peck(start[::-1], Pecking(end[x], end[z], p, q, retract, relief)))
-    except TurningError as error:
+    except GeometryError as error:
         raise block.problem(f"G{g.code}: {error.what}", error.hint, g.word) from None
     return list(turns.items(block, steps, block.start))
 

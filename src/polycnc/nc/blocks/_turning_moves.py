@@ -41,8 +41,7 @@ def _inch(block: BlockContext) -> bool:
 
 
 def axes(block: BlockContext) -> tuple[int, int]:
-    letters = block.after.modal.letter_axis
-    x, z = (int(letters[ord(letter) - ord("A")]) for letter in "XZ")
+    x, z = block.after.axis("X"), block.after.axis("Z")
     if NO_AXIS in (x, z):
         raise block.problem(
             "a turning cycle on a machine without X and Z", "Choose a lathe.", block.move_word
@@ -102,7 +101,7 @@ def items(
 def _arc(block: BlockContext, arc: Piece, start: AxisPoint, end: AxisPoint) -> Arc:
     x, z = axes(block)
     assert arc.center is not None
-    normal = int(block.after.modal.letter_axis[ord("Y") - ord("A")])
+    normal = block.after.axis("Y")
     center = arc.center[1], arc.center[0]
     feed = feeds.feed(block, start, end, straight=False)
     return Arc(start, end, center, arc.sweep_rad, (z, x, normal), feed, block.exact_stop, block.line)
@@ -116,8 +115,21 @@ def thread_feed(block: BlockContext, start: AxisPoint, end: AxisPoint, own_lead:
     Raises:
         ProgramError: the spindle is at rest, its speed changes with X, or an axis cannot follow it.
     """
+    rpm = thread_rpm(block, start, "Its lead would change with X")
+    if block.after.modal.whole[FEED_MODE] != FEED_PER_REVOLUTION:
+        raise block.problem(
+            "a thread without feed per revolution",
+            "F is the lead: select feed per revolution first.",
+            block.move_word,
+        )
+    ways = [abs(b - a) for a, b in zip(start, end, strict=True)]
+    speed = (lead(block) if own_lead is None else own_lead) * rpm / SECONDS_PER_MINUTE
+    return with_spindle(block, start, end, speed * math.hypot(*ways) / max(ways))
+
+
+def thread_rpm(block: BlockContext, start: AxisPoint, why_constant: str) -> float:
+    """Return the speed of the spindle for a thread; `why_constant` says what G96 would do to it."""
     spindle = block.after.spindle
-    modal = block.after.modal
     rpm = feeds.rpm(block, start, start) if spindle.direction else 0.0
     if rpm <= 0.0:
         raise block.problem(
@@ -126,25 +138,22 @@ def thread_feed(block: BlockContext, start: AxisPoint, end: AxisPoint, own_lead:
     if spindle.surface_speed:
         raise block.problem(
             "a thread with constant surface speed (G96)",
-            "Its lead would change with X: select G97 first.",
+            f"{why_constant}: select G97 first.",
             block.move_word,
         )
-    if modal.whole[FEED_MODE] != FEED_PER_REVOLUTION:
-        raise block.problem(
-            "a thread without feed per revolution",
-            "F is the lead: select feed per revolution first.",
-            block.move_word,
-        )
+    return rpm
+
+
+def with_spindle(block: BlockContext, start: AxisPoint, end: AxisPoint, speed_mm_s: float) -> Feed:
+    """Return the feed of a thread at a speed along its path, which each axis must be able to follow."""
     ways = [abs(b - a) for a, b in zip(start, end, strict=True)]
-    longest = max(range(len(ways)), key=ways.__getitem__)
-    speed = (lead(block) if own_lead is None else own_lead) * rpm / SECONDS_PER_MINUTE
-    for index, axis in enumerate(block.after.machine.axes):
-        wanted = speed * ways[index] / ways[longest]
-        if wanted > axis.vmax:
+    whole = math.hypot(*ways)
+    for axis, way in zip(block.after.machine.axes, ways, strict=True):
+        if whole and (wanted := speed_mm_s * way / whole) > axis.vmax * (1.0 + 1e-9):
             raise block.problem(
-                f"the thread needs {wanted * SECONDS_PER_MINUTE:.0f} mm/min of axis {axis.name}, which has "
-                f"{axis.vmax * SECONDS_PER_MINUTE:.0f}",
+                f"the thread needs {wanted * SECONDS_PER_MINUTE:.0f} mm/min of axis {axis.name}, "
+                f"which has {axis.vmax * SECONDS_PER_MINUTE:.0f}",
                 "Turn the spindle slower.",
                 block.move_word,
             )
-    return Feed(speed_mm_s=speed * math.hypot(*ways) / ways[longest], with_spindle=True)
+    return Feed(speed_mm_s=speed_mm_s, with_spindle=True)

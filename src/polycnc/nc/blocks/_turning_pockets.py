@@ -12,6 +12,7 @@ import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, replace
 
+from polycnc.nc.blocks._moves import GeometryError
 from polycnc.nc.blocks._turning import (
     MOST_PASSES,
     SAME_MM,
@@ -19,7 +20,6 @@ from polycnc.nc.blocks._turning import (
     Point,
     Roughing,
     Step,
-    TurningError,
     along,
     angle_of,
     back,
@@ -53,16 +53,16 @@ def rough_pockets(contour: Sequence[Piece], numbers: Roughing, *, first_rapid: b
     infeeds along it.
 
     Raises:
-        TurningError: The contour turns back along Z, comes out beyond the start, or a number makes no sense.
+        GeometryError: The contour turns back along Z, comes out beyond the start, or a number makes no sense.
     """
     start = contour[0].start
     corner = start[0] + numbers.allowance[0], start[1] + numbers.allowance[1]
     pieces = [part for piece in contour for part in _monotone(piece.shifted(numbers.allowance))]
     first = sum(1 for _ in _monotone(contour[0]))
     if len(pieces) == first:
-        raise TurningError("the contour has one block only", "Give it two blocks and more.")
+        raise GeometryError("the contour has one block only", "Give it two blocks and more.")
     if numbers.depth_mm <= 0.0:
-        raise TurningError("the depth of a cut is not above zero", "Give U (G71) or W (G72) above 0.")
+        raise GeometryError("the depth of a cut is not above zero", "Give U (G71) or W (G72) above 0.")
     x_way = _x_way(pieces, corner)
     z_way = _z_way(pieces, first)
     check_top(contour, x_way)
@@ -99,7 +99,7 @@ def _x_way(pieces: Sequence[Piece], corner: Point) -> float:
     """Return on which side of the start the contour lies: where it is further away."""
     farthest = max((piece.end[0] - corner[0] for piece in pieces), key=abs)
     if abs(farthest) < SAME_MM:
-        raise TurningError("the contour leaves nothing to rough", "Start away from it.")
+        raise GeometryError("the contour leaves nothing to rough", "Start away from it.")
     return math.copysign(1.0, farthest)
 
 
@@ -107,13 +107,13 @@ def _z_way(pieces: Sequence[Piece], first: int) -> float:
     """Return which way the contour follows the cuts; the way to it must not go against that.
 
     Raises:
-        TurningError: It turns back, or does not go anywhere.
+        GeometryError: It turns back, or does not go anywhere.
     """
     way = math.copysign(1.0, pieces[-1].end[1] - pieces[first].start[1])
     if abs(pieces[-1].end[1] - pieces[first].start[1]) < SAME_MM:
-        raise TurningError("the contour comes back to where it begins", "End it where the part ends.")
+        raise GeometryError("the contour comes back to where it begins", "End it where the part ends.")
     if any((piece.end[1] - piece.start[1]) * way < -SAME_MM for piece in pieces):
-        raise TurningError(
+        raise GeometryError(
             "the contour turns back along the cuts",
             "It may go in and out across them, but only one way along them: Z for G71, X for G72.",
         )
@@ -178,7 +178,7 @@ class _Work:
                     found.append(stretch)
         self._count += len(found)
         if self._count > MOST_PASSES:
-            raise TurningError(f"roughing would take more than {MOST_PASSES} passes", "Give a larger depth.")
+            raise GeometryError(f"roughing would take more than {MOST_PASSES} passes", "Give a larger depth.")
         return found
 
     def _crossing(self, piece: Piece, level: float) -> Point:

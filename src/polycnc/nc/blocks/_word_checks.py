@@ -60,8 +60,6 @@ def refuse_remaps(block: BlockContext, remaps: Mapping[str, str]) -> None:
 def refuse_contradictions(block: BlockContext) -> None:
     """Refuse functions of different groups that cannot share a block."""
     g = block.words.g
-    if len(g) < 2:
-        return
     non_modal, dwell, motion = g.get(Group.NON_MODAL), g.get(Group.DWELL), g.get(Group.MOTION)
     alone = "axis codes beside a motion" in block.dialect.refuses
     if dwell and non_modal:

@@ -17,6 +17,7 @@ Fail = Callable[[str, str, Word | None], ProgramError]
 
 LARGEST_M = 99999
 LARGEST_NUMBER = 99_999_999
+_LARGEST_ANGLE_DEG = 360_000.0
 NUMBERS = "NO:"
 """The letters of block and program numbers."""
 MOST_WORDS = 1000
@@ -297,3 +298,9 @@ def whole_number(word: Word, what: str, fail: Fail, largest: int = LARGEST_NUMBE
         text = f"{word.letter}{code_text(word.value)}"
         raise fail(f"{text} is not {what}", f"Write a whole number from 0 to {largest}.", word)
     return int(word.value)
+
+
+def check_angle(angle_deg: float, word: Word | None, fail: Fail) -> None:
+    """Refuse the angle of an R word that is absurdly large, infinite or no number."""
+    if not abs(angle_deg) <= _LARGEST_ANGLE_DEG:
+        raise fail(f"the angle R{code_text(angle_deg)} is too large", "Write up to a turn.", word)

@@ -337,7 +337,7 @@ class Channel:
 
 
 def _rules_of(dialect: Dialect) -> tuple[TextRules, ScanRules]:
-    text_rules = dialect.text_rules()
+    text_rules = dialect.text
     return text_rules, scan_rules(text_rules)
 
 

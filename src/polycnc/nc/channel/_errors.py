@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from polycnc.errors import ProgramError
+from polycnc.nc.blocks._interpreter import Unread
 from polycnc.nc.blocks._messages import Messages
-from polycnc.nc.blocks._not_blocks import Unread
 
 _MOST_ERRORS = 1000
 

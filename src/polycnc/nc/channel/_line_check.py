@@ -80,7 +80,7 @@ class LineCheck:
         self._machine = state.machine
         self._seen = _unwritten(state.machine)
         self._follow(state)
-        self._rules = dialect.text_rules()
+        self._rules = dialect.text
         self._words_only = words_only
         self._sure = True
         self._begun = False

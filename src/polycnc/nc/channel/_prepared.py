@@ -12,13 +12,12 @@ from polycnc.nc.blocks._channel_state import ChannelState
 from polycnc.nc.blocks._events import EventRun
 from polycnc.nc.blocks._moves import Feed, Line
 from polycnc.nc.blocks._queue import QueueWriter
-from polycnc.nc.channel._first_state import first_state
 from polycnc.nc.channel._options import ChannelOptions
 from polycnc.nc.dialect._dialect import Dialect, DialectTables
 from polycnc.nc.fast._carried import NONE, Carried
 from polycnc.nc.fast._plain_blocks import run_plain
 from polycnc.nc.fast._work import begin_run, carried_by, carry, events_made, make_fast_work, marked, with_room
-from polycnc.nc.modal._modal import ORDINARY
+from polycnc.nc.modal._modal import LINEAR_AXIS, MODULO_AXIS, ORDINARY, ROTARY_AXIS, make_modal, set_diameters
 from polycnc.nc.records._block_records import BlockRecords, Call
 from polycnc.nc.records._replay import Feeds, RunBegin, coolant_after
 from polycnc.nc.text._program import ProgramText
@@ -180,3 +179,36 @@ class Prepared:
         start = tuple(modal.position.tolist())
         self.writer.put(Line(start, position, Feed(), rapid=True, exact_stop=True, line=line, tag=tag))
         modal.position[:] = position
+
+
+_START_OFFSET = "G54"
+
+
+def first_state(config: MachineConfig, dialect: Dialect, names: tuple[str, ...]) -> ChannelState:
+    """Return the state of a channel whose programs call the axes by these names."""
+    limits = [axis.soft_limits for axis in config.axes]
+    modal = make_modal(
+        names,
+        [
+            LINEAR_AXIS if axis.kind == "linear" else MODULO_AXIS if axis.modulo else ROTARY_AXIS
+            for axis in config.axes
+        ],
+        [low for low, _ in limits],
+        [high for _, high in limits],
+        min(axis.vmax for axis in config.axes),
+    )
+    modal.position[:] = config.start_positions
+    dialect.set_initial_state(modal)
+    named = dialect.diameter_axes
+    set_diameters(
+        modal, [index for index, axis in enumerate(config.axes) if axis.is_diameter or axis.name in named]
+    )
+    state = ChannelState(config, modal)
+    state.path_tolerance_mm = dialect.path_tolerance_mm(config.path)
+    state.axis_names = names
+    state.cycle = replace(state.cycle, retract_to_initial=dialect.initial.retract == "initial")
+    given = getattr(config.offsets, "at_start", None)
+    begins = _START_OFFSET in config.offsets if given is None else given
+    if begins or dialect.sets_work_offsets:
+        state.place_zero(state.coordinates.with_work_offset(0, _START_OFFSET))
+    return state

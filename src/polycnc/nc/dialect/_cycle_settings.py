@@ -2,32 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import Annotated, Literal, TypeAlias
+from typing import Annotated, Literal
 
 from pydantic import Field
 
 from polycnc.machine import StrictModel
-
-PeckTap: TypeAlias = Literal["none", "chip_break", "retract"]
-
-
-@dataclass(frozen=True, slots=True)
-class CycleSettings:
-    """What a control's parameters say about its cycles.
-
-    `chip_break_mm` is how far G73 backs up, `reentry_mm` how far above the last cut G83 changes from rapid to
-    feed. `shift_direction` is where Q shifts the tool when a block gives no I and J. `peck_tap` is what Q does in a
-    tapping cycle: nothing, back by `chip_break_mm`, or back to R. With `feeds_out` tapping and G89 go out at feed all
-    the way; `taps_either_way` lets G84 tap a left-hand thread with M4.
-    """
-
-    chip_break_mm: float = 1.0
-    reentry_mm: float = 1.0
-    shift_direction: tuple[float, float] = (1.0, 0.0)
-    peck_tap: PeckTap = "none"
-    feeds_out: bool = False
-    taps_either_way: bool = True
 
 
 class Cycles(StrictModel):
@@ -42,7 +21,7 @@ class Cycles(StrictModel):
     shift: Literal["+1", "-1", "+2", "-2"] = Field(
         default="+1", description="Axis of the plane and direction in which Q shifts a boring tool."
     )
-    peck_tap: PeckTap = Field(
+    peck_tap: Literal["none", "chip_break", "retract"] = Field(
         default="none",
         description='What Q does in a tapping cycle: nothing, "chip_break" backs up, "retract" goes back to R.',
     )
@@ -63,3 +42,9 @@ class Cycles(StrictModel):
     repeats: tuple[Literal["L", "K"], ...] = Field(
         default=("L", "K"), description="Addresses that say how many holes a block drills."
     )
+
+    @property
+    def shift_direction(self) -> tuple[float, float]:
+        """Where in the plane Q shifts the tool when a block gives no I and J."""
+        sign = 1.0 if self.shift[0] == "+" else -1.0
+        return (sign, 0.0) if self.shift[1] == "1" else (0.0, sign)

@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import math
 import re
-import string
 from collections.abc import Iterable
 from functools import cache, cached_property
 from importlib import resources
@@ -21,7 +20,7 @@ from pydantic import AfterValidator, Field, model_validator
 from polycnc.errors import UsageError, did_you_mean
 from polycnc.machine import PathConfig, StrictModel, load_toml, parse_toml, problem, validate
 from polycnc.nc.dialect._arc_settings import Arcs
-from polycnc.nc.dialect._cycle_settings import Cycles, CycleSettings
+from polycnc.nc.dialect._cycle_settings import Cycles
 from polycnc.nc.modal._actions import M_ACTIONS, NO_SENSE, Action, Family, Group, MAction, of_family, sense_of
 from polycnc.nc.modal._modal import (
     ABSOLUTE,
@@ -95,13 +94,6 @@ def _groups_or_m_codes(names: tuple[str, ...]) -> tuple[str, ...]:
     return names
 
 
-def _only_marks(characters: str) -> str:
-    # A letter, digit, sign or point here would turn plain words into statements.
-    if wrong := "".join(char for char in characters if char not in string.punctuation or char in "+-."):
-        raise problem(f"'{wrong}' cannot mark a statement", hint="use punctuation marks other than + - .")
-    return characters
-
-
 class Numbers(StrictModel):
     """How numbers without a decimal point are read."""
 
@@ -136,25 +128,6 @@ class SubPrograms(StrictModel):
     )
     end_returns: bool = Field(
         default=False, description="An end of program (M2, M30) in a sub-program returns to its caller."
-    )
-
-
-class Text(StrictModel):
-    """What may stand in a block besides words."""
-
-    semicolon_comments: bool = Field(default=True, description="; begins a comment to the end of the line.")
-    semicolon_ends: bool = Field(default=False, description="; may end a block, at the end of its line.")
-    parenthesis_comments: bool = Field(default=True, description="( ) enclose a comment.")
-    unclosed_comments: bool = Field(default=False, description="A comment may end with its line.")
-    blanks_in_numbers: bool = Field(
-        default=False, description="Blanks between the digits of a number do not end it: X1 0 is X10."
-    )
-    line_numbers: bool = Field(
-        default=False, description="A block may begin with a bare number or a point: then it is a statement."
-    )
-    statement_characters: Annotated[str, AfterValidator(_only_marks)] = Field(
-        default=TextRules().statement_characters,
-        description='Characters, besides "=", that make a block a statement.',
     )
 
 
@@ -301,7 +274,7 @@ class Dialect(StrictModel):
     )
     sub_program: SubPrograms = Field(default=SubPrograms(), description="See `[sub_program]`.")
     cycles: Cycles = Field(default=Cycles(), description="See `[cycles]`.")
-    text: Text = Field(default=Text(), description="See `[text]`.")
+    text: TextRules = Field(default=TextRules(), description="See `[text]`.")
     initial: Initial = Field(default=Initial(), description="See `[initial]`.")
 
     @model_validator(mode="after")
@@ -386,23 +359,6 @@ class Dialect(StrictModel):
             table[number] = action
         changed = {name: getattr(self, name) for name in type(self).model_fields}
         return type(self).model_construct(**{**changed, "g": g, "m": m})
-
-    def text_rules(self) -> TextRules:
-        """Return the rules of the block scanners."""
-        return TextRules(**dict(self.text))
-
-    def cycle_settings(self) -> CycleSettings:
-        """Return the settings of the drilling cycles."""
-        cycles = self.cycles
-        sign = 1.0 if cycles.shift[0] == "+" else -1.0
-        return CycleSettings(
-            chip_break_mm=cycles.chip_break_mm,
-            reentry_mm=cycles.reentry_mm,
-            shift_direction=(sign, 0.0) if cycles.shift[1] == "1" else (0.0, sign),
-            peck_tap=cycles.peck_tap,
-            feeds_out=cycles.feeds_out,
-            taps_either_way="G84 with M4" not in self.refuses,
-        )
 
     @property
     def increment(self) -> float:

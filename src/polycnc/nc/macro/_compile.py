@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 
 from polycnc.language import Emitter, Flaw, Flow, Traced
 from polycnc.nc.macro._calls import argument_numbers
-from polycnc.nc.macro._expressions import Expressions, Numbers, Value, may_overflow, no_value, no_variable
+from polycnc.nc.macro._expressions import Expressions, Value, may_overflow, no_value, no_variable_at
 from polycnc.nc.macro._functions import FUNCTIONS, OPERATORS, power
 from polycnc.nc.macro._shape import RESTART, Shape, last_label
 from polycnc.nc.macro._statement_values import INTO_LOOP
@@ -91,7 +91,7 @@ class Code:
 
 
 class _Compiler:
-    def __init__(self, text: str, shape: Shape, numbers: Numbers, increment: float, rounds: int) -> None:
+    def __init__(self, text: str, shape: Shape, values: Expressions, increment: float, rounds: int) -> None:
         self.flaws: list[Flaw] = []
         self._text = text
         self._increment = increment
@@ -99,7 +99,7 @@ class _Compiler:
         self._out: Emitter[int] = Emitter(0)
         self._changes = 0  # statements so far that change something
         self._flow = Flow(self._out, self, rounds=rounds, changes=lambda: self._changes)
-        self._values = Expressions(numbers)
+        self._values = values
         self._line = Line(0, 0, None, 0, ())
 
     def compile(self, name: str) -> Code:
@@ -253,7 +253,7 @@ class _Compiler:
             self._flush()
             out.put(f"put({place}, {value.python.text})")
             return
-        kind = self._values.numbers.kind(number)
+        kind = self._values.variables.kind(number)
         if kind == "null":
             what = "#0 is always vacant and cannot be written"
             raise Refusal(target.at, what, "Write another variable.", code="PS0116")
@@ -284,9 +284,9 @@ class _Compiler:
             line, text = self._line, f"T[{len(self._code.texts) - 1}]"
             out.put(f"yield stop({value.number().text}, {line.line}, {line.offset}, {text})")
             return
-        if not self._values.numbers.has(number):
-            raise no_variable(statement.target.at, number)
-        if self._values.numbers.waits(number):
+        if not self._values.system.has(number):
+            raise no_variable_at(statement.target.at, number)
+        if self._values.system.waits(number):
             self._values.before.append(self._values.drain)
         self._flush()
         out.put(f"put({number}, {value.python.text})")
@@ -402,10 +402,10 @@ def _arguments(
 
 
 def compile_program(
-    text: str, shape: Shape, numbers: Numbers, increment: float, rounds: int, name: str
+    text: str, shape: Shape, values: Expressions, increment: float, rounds: int, name: str
 ) -> tuple[Code | None, list[Flaw]]:
     """Return a program compiled, or all that is wrong with it; it pauses after so many rounds and jumps back."""
-    compiler = _Compiler(text, shape, numbers, increment, rounds)
+    compiler = _Compiler(text, shape, values, increment, rounds)
     try:
         code = compiler.compile(name)
     except Flaw as flaw:

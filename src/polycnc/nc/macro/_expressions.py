@@ -7,30 +7,15 @@ Local variables are the list `L`, common ones the list `C`, both indexed by numb
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Protocol
 
 from polycnc.language import Chain, Flaw, Python, Unary, infix, prefix
 from polycnc.nc.macro._operand_reader import COMPARISONS
 from polycnc.nc.macro._syntax import Expression, Function, Name, Number, Refusal, Variable
+from polycnc.nc.macro._system import SystemVariables
+from polycnc.nc.macro._variables import MacroVariables
 
 _ARITHMETIC = "+-*/"
 _SMALL = 1e6  # adding so little at a time never gets a variable out of range
-
-
-class Numbers(Protocol):
-    """What the compiler asks about variables."""
-
-    def kind(self, number: int) -> str | None:
-        """Return the sort of a variable that is none of the system's, None if there is none."""
-        ...
-
-    def has(self, number: int) -> bool:
-        """Tell whether there is a system variable."""
-        ...
-
-    def waits(self, number: int) -> bool:
-        """Tell whether reading a system variable waits for all blocks before."""
-        ...
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,16 +29,17 @@ class Value:
 
 
 class Expressions:
-    """Write expressions.
+    """Write expressions of a control's `variables` and those of its `system`.
 
     Lines that one needs before its own are in `before`; `drain` is the line that waits for the blocks before.
     """
 
-    def __init__(self, numbers: Numbers) -> None:
+    def __init__(self, variables: MacroVariables, system: SystemVariables) -> None:
         self.before: list[str] = []
         self.drain = ""
         self.in_address = False
-        self.numbers = numbers
+        self.variables = variables
+        self.system = system
         self._temporaries = 0
 
     def forget(self) -> None:
@@ -104,15 +90,15 @@ class Expressions:
         number = tree.number
         if tree.index is not None:
             return Value(Python(f"get({self.index(tree.index)})"), vacant=True)
-        match self.numbers.kind(number):
+        match self.variables.kind(number):
             case "null":
                 return Value(Python("None"), vacant=True)
             case "local":
                 return Value(Python(f"L[{number}]"), vacant=True)
             case None:
-                if not self.numbers.has(number):
-                    raise no_variable(tree.at, number)
-                if self.numbers.waits(number) and self.drain not in self.before:
+                if not self.system.has(number):
+                    raise no_variable_at(tree.at, number)
+                if self.system.waits(number) and self.drain not in self.before:
                     self.before.append(self.drain)
                 return Value(Python(f"get({number})"), vacant=True)
             case _:
@@ -159,7 +145,7 @@ class Expressions:
         return Value(Python(f"o_{operator}({left.number().text}, {right.number().text})"))
 
 
-def no_variable(at: int, number: int) -> Refusal:
+def no_variable_at(at: int, number: int) -> Refusal:
     """Return what is wrong with a variable that the control does not have."""
     return Refusal(at, f"there is no variable #{number}", "See the table of variables.", code="PS0115")
 
@@ -172,16 +158,9 @@ def may_overflow(tree: Expression) -> bool:
     if isinstance(tree, (Number, Variable)):
         return False
     if isinstance(tree, Chain):
-        variables = [
-            each
-            for each in (tree.first, *(link.operand for link in tree.links))
-            if not isinstance(each, Number)
-        ]
-        constants = [
-            each.value
-            for each in (tree.first, *(link.operand for link in tree.links))
-            if isinstance(each, Number)
-        ]
+        operands = tree.first, *(link.operand for link in tree.links)
+        variables = [each for each in operands if not isinstance(each, Number)]
+        constants = [each.value for each in operands if isinstance(each, Number)]
         small = len(variables) <= 1 and all(abs(each) <= _SMALL for each in constants)
         plus = all(link.operator in "+-" for link in tree.links)
         return not (small and plus and all(isinstance(each, Variable) for each in variables))

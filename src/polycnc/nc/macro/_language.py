@@ -10,6 +10,7 @@ from polycnc.language import Traced
 from polycnc.machine import SnapshotError
 from polycnc.nc.macro._calls import Arguments, MacroCalls
 from polycnc.nc.macro._compile import compile_program, names
+from polycnc.nc.macro._expressions import Expressions
 from polycnc.nc.macro._functions import asin, atan2
 from polycnc.nc.macro._host import Host
 from polycnc.nc.macro._macro_source import Compiled, MacroSource, error_at, standing_code
@@ -22,7 +23,7 @@ from polycnc.nc.macro._special_lines import Special, called_programs, returns_to
 from polycnc.nc.macro._system import SystemVariables
 from polycnc.nc.macro._variables import MacroVariables, Value
 from polycnc.nc.records._block_records import Call
-from polycnc.nc.sources._block_source import BlockSource, Returning
+from polycnc.nc.sources._block_source import BlockSource, Returning, elsewhere
 from polycnc.nc.text._program import ProgramText
 
 PAUSE_JUMPS = 20_000
@@ -123,7 +124,7 @@ class MacroLanguage:
 
     def source(self, text: ProgramText, offset: int, line: int, arguments: object) -> MacroSource | None:
         """Return a source for the program that begins at byte `offset`, None where plain text needs none."""
-        given = arguments if isinstance(arguments, Arguments) else None
+        given = _given(arguments)
         needed = given is not None or bool(self.modals) or self.interrupt_program is not None
         key = (id(text), offset, self.codes_off > 0 or (given is not None and given.by_code))
         if key not in self._compiled:
@@ -184,7 +185,8 @@ class MacroLanguage:
             made, flaws = shape(whole, parts, returns=returns, start=start)
             if not flaws:
                 increment = self.channel.dialect.increment
-                code, flaws = compile_program(whole, made, self, increment, self._pause_jumps, name)
+                values = Expressions(self.variables, self.system)
+                code, flaws = compile_program(whole, made, values, increment, self._pause_jumps, name)
         errors = [error_at(text, flaw) for flaw in flaws]
         number = _program_number(whole, offset)
         return Compiled(text, offset, line, plain, start, code, errors, name, number)
@@ -277,9 +279,7 @@ class MacroLanguage:
                 saved.text, saved.offset, saved.line, saved.plain, force=True, start=saved.start
             )
         except (ProgramError, LookupError, ValueError) as error:
-            raise SnapshotError(
-                f"{saved.text.name} cannot go on where the snapshot says", hint="use another snapshot"
-            ) from error
+            raise elsewhere(saved.text) from error
         assert compiled is not None
         return saved, compiled, standing_code(compiled, saved)
 
@@ -305,20 +305,6 @@ class MacroLanguage:
             for (given, _), source in zip(saved.under_way, sources, strict=True)
         ]
 
-    # ------------------------------------------------------------------ what the compiler asks
-
-    def kind(self, number: int) -> str | None:
-        """Return the sort of a variable that is none of the system's, None if there is none."""
-        return self.variables.kind(number)
-
-    def has(self, number: int) -> bool:
-        """Tell whether there is a system variable."""
-        return self.system.has(number)
-
-    def waits(self, number: int) -> bool:
-        """Tell whether reading a system variable waits for all blocks before."""
-        return self.system.waits(number)
-
     def bindings(self) -> dict[str, object]:
         """Return the functions and operators as compiled programs call them, and what they are set to."""
         nat = self.nat
@@ -334,10 +320,5 @@ def _given(arguments: object) -> Arguments | None:
 
 
 def _program_number(text: str, offset: int) -> int:
-    digits = text[offset : offset + 200].lstrip("% \t\r\n:Oo")[:8]
-    number = ""
-    for char in digits:
-        if not char.isdigit() or not char.isascii():
-            break
-        number += char
-    return int(number) if number else 0
+    number = re.match("[0-9]*", text[offset : offset + 200].lstrip("% \t\r\n:Oo")[:8])
+    return int(number[0]) if number and number[0] else 0

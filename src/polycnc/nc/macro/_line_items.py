@@ -154,7 +154,7 @@ class SpanItems:
         text, channel = self._text, self._language.channel
         offset, line = self._offset, self._line
         end = min(text.next_line(offset), self._end)
-        block = scan_block(text, offset, line, channel.dialect.text_rules())
+        block = scan_block(text, offset, line, channel.dialect.text)
         opened = block.flags & STATEMENT
         words = line_words(text, offset, end, self._values) if opened else block.words
         letters = tuple((word.letter, word.value) for word in words)

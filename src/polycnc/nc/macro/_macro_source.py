@@ -28,7 +28,15 @@ from polycnc.nc.macro._statement_values import (
 )
 from polycnc.nc.macro._variables import LEVELS, LOCALS, MacroError, Value, checked
 from polycnc.nc.modal._modal import INCH
-from polycnc.nc.sources._block_source import CallProgram, EndSource, Pause, SourceItem, TextSpan, WordsBlock
+from polycnc.nc.sources._block_source import (
+    CallProgram,
+    EndSource,
+    Pause,
+    SourceItem,
+    TextSpan,
+    WordsBlock,
+    elsewhere,
+)
 from polycnc.nc.text._program import ProgramText
 from polycnc.nc.text._scan_plain import Word
 
@@ -275,8 +283,7 @@ class MacroSource:
         return value / increment if increment else value
 
     def _block(self, index: int, values: tuple[Value, ...]) -> WordsBlock:
-        code = self._code
-        spec = code.blocks[index]
+        spec = self._code.blocks[index]
         following = iter(values)
         words = []
         for word in spec.words:
@@ -301,15 +308,13 @@ class MacroSource:
         return SpanItems(self._language, self._compiled.text, whole, index, self.word_values)
 
     def _call(self, index: int, program: float, repeats: float, values: tuple[Value, ...]) -> CallProgram:
-        code = self._code
         check_level(self._language.variables)
-        spec = code.calls[index]
+        spec = self._code.calls[index]
         arguments = Arguments(dict(zip(spec.numbers, values, strict=True)), by_code=spec.by_code)
         return CallProgram(program_number(program), spec.line, spec.offset, repetitions(repeats), arguments)
 
     def _sub(self, index: int, program: float, repeats: float) -> CallProgram:
-        code = self._code
-        spec = code.calls[index]
+        spec = self._code.calls[index]
         return CallProgram(
             program_number(program),
             spec.line,
@@ -321,8 +326,7 @@ class MacroSource:
     def _modal_call(
         self, index: int, program: float, repeats: float, values: tuple[Value, ...], each: bool
     ) -> ModalCall:
-        code = self._code
-        numbers = code.calls[index].numbers
+        numbers = self._code.calls[index].numbers
         if len(self._language.modals) >= LEVELS:
             raise MacroError(f"more than {LEVELS} modal calls", "Cancel one with G67 first.", "PS0122")
         return ModalCall(
@@ -331,8 +335,7 @@ class MacroSource:
 
     def put_out(self, index: int, values: tuple[float, ...], line: int) -> None:
         """Write an output to the device."""
-        code = self._code
-        self._language.output.write(code.outputs[index], values, line)
+        self._language.output.write(self._code.outputs[index], values, line)
 
     def _find(self, number: int, offset: int) -> tuple[int, int]:
         code = self._code
@@ -427,20 +430,14 @@ def standing_code(compiled: Compiled, saved: SavedSource) -> Traced[int] | None:
         if fits:
             return None if code is None else standing(code.traced, saved.place, saved.names)
     except ValueError as error:
-        raise _elsewhere(compiled) from error
-    raise _elsewhere(compiled)
+        raise elsewhere(compiled.text) from error
+    raise elsewhere(compiled.text)
 
 
 def _fits(items: SavedItems, code: Code | None) -> bool:
     number = 0 if items.span is None else items.span[0]
     spans: Mapping[int, object] = {} if code is None else dict(enumerate(code.spans))
     return is_stage(items.stage) and (items.span is None or isinstance(spans.get(number), TextSpan))
-
-
-def _elsewhere(compiled: Compiled) -> SnapshotError:
-    return SnapshotError(
-        f"{compiled.text.name} cannot go on where the snapshot says", hint="use another snapshot"
-    )
 
 
 def _meaning(error: Exception) -> tuple[str, str, str]:

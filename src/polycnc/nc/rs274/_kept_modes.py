@@ -19,10 +19,12 @@ from polycnc.nc.modal._modal import (
     FEED_MODE,
     FEED_NUMBER,
     INCH,
+    NO_AXIS,
     PLANE,
     length_scale,
 )
 from polycnc.nc.rs274._functions import NumberError
+from polycnc.nc.rs274._known_names import has_diameters
 
 Words: TypeAlias = tuple[tuple[str, float], ...]
 KEEPING = {repr(float(code)): code for code in (70, 71, 72, 73)}
@@ -35,13 +37,10 @@ def modes_of(state: ChannelState) -> tuple[Words, ...]:
     """Return the words of all modes in force, in the order in which they are put in force."""
     whole = state.modal.whole
     modal, spindle = state.modal, state.spindle
-    letters = modal.letter_axis
-    x = int(letters[ord("X") - ord("A")])
-    diameter = x >= 0 and float(modal.scale[x]) != length_scale(modal)
     mist, flood = 7 in spindle.coolant, 8 in spindle.coolant
     found: list[Words] = [
         (("G", 20.0 if whole[INCH] else 21.0),),
-        (("G", 7.0 if diameter else 8.0),) if x >= 0 else (),
+        (("G", 7.0 if has_diameters(state) else 8.0),) if state.axis("X") != NO_AXIS else (),
         (("G", 17.0 + float(whole[PLANE])),),
         (("G", 90.0 if whole[ABSOLUTE] else 91.0),),
         (("G", 90.1 if whole[ARC_ABSOLUTE] else 91.1),),

@@ -16,6 +16,7 @@ from polycnc.nc.modal._modal import (
     FEED_PER_REVOLUTION,
     INCH,
     MOTION,
+    NO_AXIS,
     PLANE,
     length_scale,
 )
@@ -61,10 +62,10 @@ def _motion(of: Known) -> float:
     return _TURNING.get(state.turning.motion) or _MOTIONS[int(state.modal.whole[MOTION])]
 
 
-def _has_diameters(of: Known) -> bool:
-    modal = of.state.modal
-    axis = int(modal.letter_axis[ord("X") - ord("A")])
-    return axis >= 0 and float(modal.scale[axis]) != length_scale(modal)
+def has_diameters(state: ChannelState) -> bool:
+    """Tell whether X words are diameters."""
+    axis = state.axis("X")
+    return axis != NO_AXIS and float(state.modal.scale[axis]) != length_scale(state.modal)
 
 
 def _speed_word(of: Known) -> float:
@@ -98,8 +99,8 @@ KNOWN_NAMES: dict[str, Value] = {
     "_spindle_rpm_mode": lambda of: float(not of.state.spindle.surface_speed),
     "_spindle_css_mode": lambda of: float(of.state.spindle.surface_speed),
     "_ijk_absolute_mode": _mode(ARC_ABSOLUTE, 1),
-    "_lathe_diameter_mode": lambda of: float(_has_diameters(of)),
-    "_lathe_radius_mode": lambda of: float(not _has_diameters(of)),
+    "_lathe_diameter_mode": lambda of: float(has_diameters(of.state)),
+    "_lathe_radius_mode": lambda of: float(not has_diameters(of.state)),
     "_spindle_on": lambda of: float(of.state.spindle.direction != 0),
     "_spindle_cw": lambda of: float(of.state.spindle.direction == 1),
     "_mist": lambda of: float(7 in of.state.spindle.coolant),

@@ -17,7 +17,7 @@ from polycnc.nc.rs274._program import Program, translate
 from polycnc.nc.rs274._saved import SAVED_CLASSES, SavedLanguage, SavedProgram
 from polycnc.nc.rs274._source import RunningProgram, sub_program_file
 from polycnc.nc.rs274._structure import holds_language, is_numbered_within
-from polycnc.nc.sources._block_source import BlockSource, Returning
+from polycnc.nc.sources._block_source import BlockSource, Returning, elsewhere
 from polycnc.nc.text._program import ProgramText
 
 _FILES = re.compile(rb"\([ \t]*(LOGOPEN|LOGAPPEND|LOGCLOSE|LOG|PROBEOPEN|PROBECLOSE)\b", re.IGNORECASE)
@@ -150,9 +150,7 @@ class NgcLanguage:
                 program = self._of(level.text, level.offset)
                 found.append((program, standing(program.functions[level.label], level.line, level.names)))
             except (ProgramError, LookupError, ValueError) as error:
-                raise SnapshotError(
-                    f"{level.text.name} cannot go on where the snapshot says", hint="use another snapshot"
-                ) from error
+                raise elsewhere(level.text) from error
         return found
 
     def _go_to(

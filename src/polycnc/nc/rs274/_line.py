@@ -20,38 +20,12 @@ _POWERS = {
 }  # fmt: skip
 _COMPARED = {"gt": ">", "ge": ">=", "lt": "<", "le": "<="}
 _FUNCTIONS = (
-    "abs",
-    "acos",
-    "asin",
-    "atan",
-    "cos",
-    "exists",
-    "exp",
-    "fix",
-    "fup",
-    "ln",
-    "round",
-    "sin",
-    "sqrt",
-    "tan",
-)
+    "abs", "acos", "asin", "atan", "cos", "exists", "exp", "fix", "fup", "ln", "round", "sin", "sqrt", "tan",
+)  # fmt: skip
 _KEYWORDS = (
-    *(
-        "endsub",
-        "sub",
-        "call",
-        "return",
-        "elseif",
-        "else",
-        "endif",
-        "if",
-        "endwhile",
-        "while",
-        "do",
-        "endrepeat",
-    ),
-    *("repeat", "break", "continue"),
-)
+    "endsub", "sub", "call", "return", "elseif", "else", "endif", "if", "endwhile", "while", "do", "endrepeat",
+    "repeat", "break", "continue",
+)  # fmt: skip
 
 
 def _any_of(words: Iterable[str], *others: str) -> re.Pattern[str]:
@@ -108,12 +82,8 @@ class Line:
     skip: int = 0
 
 
-def _bare(word: str) -> str:
-    return "".join(word.split()).lower()
-
-
-def parameter_name(text: str) -> str:
-    """Return a name as it is compared: without blanks, in small letters."""
+def bare(text: str) -> str:
+    """Return a word or a name as it is compared: without blanks, in small letters."""
     return "".join(text.split()).lower()
 
 
@@ -218,10 +188,10 @@ class LineReader:
         while True:
             self._next()
             found = _OPERATOR.match(self._text, self._at)
-            if found is None or (power := _POWERS[_bare(found[0])]) <= least:
+            if found is None or (power := _POWERS[bare(found[0])]) <= least:
                 return left
             self._at = found.end()
-            left = _applied(_bare(found[0]), left, self._chain(power))
+            left = _applied(bare(found[0]), left, self._chain(power))
 
     def _function(self) -> Expression:
         found = _FUNCTION.match(self._text, self._at)
@@ -232,7 +202,7 @@ class LineReader:
                 f"Functions are {', '.join(_FUNCTIONS).upper()}.",
             )
         self._at = found.end()
-        name = _bare(found[0])
+        name = bare(found[0])
         if name == "exists":
             self._expect("[")
             self._expect("#")
@@ -244,7 +214,7 @@ class LineReader:
                 return Expression(f"exists_number({number})")
             self._at = named.end()
             self._expect("]")
-            return Expression(f"exists({parameter_name(named[1])!r}, N)")
+            return Expression(f"exists({bare(named[1])!r}, N)")
         first = self._bracket().python
         if name != "atan":
             return Expression(f"{name}_({first})")
@@ -266,7 +236,7 @@ class LineReader:
         sets = numbered == "put"
         if found := _NAME.match(self._text, self._at):
             self._at = found.end()
-            name = parameter_name(found[1])
+            name = bare(found[1])
             if not name.startswith("_"):
                 return f"N[{name!r}]" + (" = {}" if sets else "")
             if name == "_line" and not sets:
@@ -291,7 +261,7 @@ class LineReader:
         computed = False
         if found := _NAME.match(self._text, self._at):
             self._at = found.end()
-            label = parameter_name(found[1])
+            label = bare(found[1])
         elif char.isdigit():
             found = _NUMBER.match(self._text, self._at)
             assert found is not None
@@ -308,7 +278,7 @@ class LineReader:
                 "Add SUB, CALL, IF, WHILE, DO, REPEAT or what ends them.",
             )
         self._at = keyword.end()
-        word = OWord(_bare(keyword[0]), label, computed, at)
+        word = OWord(bare(keyword[0]), label, computed, at)
         if word.keyword in ("call", "return", "endsub", "if", "elseif", "while", "repeat"):
             while (char := self._next()) and char in "[(":
                 if char == "(":

@@ -14,7 +14,7 @@ from polycnc.nc.modal._modal import length_scale
 from polycnc.nc.rs274._functions import NumberError
 from polycnc.nc.rs274._inputs import ANSWER
 from polycnc.nc.rs274._known_names import KNOWN_NAMES
-from polycnc.nc.rs274._line import parameter_name
+from polycnc.nc.rs274._line import bare
 from polycnc.nc.rs274._parameter_file import parameters_text, read_parameters
 from polycnc.units import MM_PER_INCH
 
@@ -178,22 +178,15 @@ class Parameters:
             return None
         programs = self._machine.config.programs
         if found[1] is not None:
-            sections = [
-                values for section, values in programs.settings.items() if parameter_name(section) == found[1]
-            ]
+            sections = [values for section, values in programs.settings.items() if bare(section) == found[1]]
             return next(
-                (
-                    value
-                    for values in sections
-                    for key, value in values.items()
-                    if parameter_name(key) == found[2]
-                ),
+                (value for values in sections for key, value in values.items() if bare(key) == found[2]),
                 None,
             )
         for point in self._machine.config.io.points:
-            if parameter_name(point) == found[3]:
+            if bare(point) == found[3]:
                 return float(self._machine.io[point])
-        return next((value for pin, value in programs.pins.items() if parameter_name(pin) == found[3]), None)
+        return next((value for pin, value in programs.pins.items() if bare(pin) == found[3]), None)
 
     def _system(self, index: int) -> float:
         state = self.state

@@ -58,7 +58,7 @@ class ProfilePlaces:
     """Let the position of a channel be where a profile leads; it is as before afterwards."""
 
     def __init__(self, state: ChannelState) -> None:
-        self._modal = state.modal
+        self._state = state
         self._before = state.modal.position.copy()
 
     def __enter__(self) -> ProfilePlaces:
@@ -67,13 +67,13 @@ class ProfilePlaces:
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
-        self._modal.position[:] = self._before
+        self._state.modal.position[:] = self._before
 
     def go_on(self, words: Mapping[str, float]) -> None:
         """Go where the words of a line lead."""
-        modal = self._modal
+        modal = self._state.modal
         for letter in "XZUW":
-            axis = int(modal.letter_axis[ord(_WAYS.get(letter, letter)) - ord("A")])
+            axis = self._state.axis(_WAYS.get(letter, letter))
             if letter not in words or axis == NO_AXIS:
                 continue
             way = words[letter] * float(modal.scale[axis])

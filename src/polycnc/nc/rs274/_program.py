@@ -6,6 +6,7 @@ is for, where that is not the innermost one.
 
 from __future__ import annotations
 
+from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass, replace
 
 from polycnc.errors import ProgramError
@@ -135,11 +136,12 @@ class _Writer:
 
     def _line(self, row: Row, line: Line) -> None:
         self._at(row)
-        if line.skip:
-            with self._out.block(f"if not skips({line.skip}):"):
-                self._statement(row, line)
-        else:
+        with self._unless_skipped(line):
             self._statement(row, line)
+
+    def _unless_skipped(self, line: Line) -> AbstractContextManager[None]:
+        """Write what stands inside so that a line with a skip mark can be left out."""
+        return self._out.block(f"if not skips({line.skip}):") if line.skip else nullcontext()
 
     def _statement(self, row: Row, line: Line) -> None:
         put = self._out.put
@@ -301,10 +303,7 @@ class _Writer:
 
     def _block(self, block: Block) -> None:
         self._at(block.row, block.word.at)
-        if block.line.skip:
-            with self._out.block(f"if not skips({block.line.skip}):"):
-                self._inside(block)
-        else:
+        with self._unless_skipped(block.line):
             self._inside(block)
 
     def _inside(self, block: Block) -> None:

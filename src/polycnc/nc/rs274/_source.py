@@ -135,7 +135,7 @@ class RunningProgram:
             "profile": lambda words: profile_of(
                 self._levels[-1].program.functions, self._function, owner.parameters.state, words
             ),
-            "says": self._says,
+            "says": lambda line, offset, text: self._block(line, offset, (), text),
             **text_functions(owner.parameters),
             "times": lambda number: max(0, round(number)),
             "label": lambda number: str(round(number)),
@@ -315,9 +315,9 @@ class RunningProgram:
             made.goes_back = None if level.goes_back is None else ModesRequest(*level.goes_back)
             if traced is not program.functions[level.label]:
                 made.run.close()
-            if traced is not None and traced is not program.functions[level.label]:
-                made.run = traced.load(self._names)["program"](made.numbered, made.named, level.names)
-                next(made.run)
+                if traced is not None:
+                    made.run = traced.load(self._names)["program"](made.numbered, made.named, level.names)
+                    next(made.run)
         self._pauses, self._over, self._calls = saved.pauses, saved.over, saved.calls
         text = self._levels[-1].program.text
         self._back = [
@@ -345,10 +345,6 @@ class RunningProgram:
             _made(words), line, offset, message, text=level.program.text, calls=level.calls, profile=profile
         )
 
-    def _says(self, line: int, offset: int, text: str) -> WordsBlock:
-        level = self._levels[-1]
-        return WordsBlock((), line, offset, text, text=level.program.text, calls=level.calls)
-
     def _drain(self, line: int) -> Drain:
         level = self._levels[-1]
         return Drain(line, level.program.text, level.calls)
@@ -363,35 +359,40 @@ class RunningProgram:
         return found
 
     def _asked(self, label: str, arguments: tuple[float, ...], line: int) -> CallRequest:
-        level = self._levels[-1]
-        found = [each for each in (level.program, self._main) if label in each.functions]
-        program = found[0] if found and label else self._owner.file_of(label, self._main.text)
-        if program is None or not label or label not in program.functions:
+        program = self._program_with(label, label) if label else None
+        if program is None:
             raise NumberError(
                 f"there is no sub-program O<{label}>",
                 f"Write O<{label}> SUB in this file, or put it into {label}.ngc beside the program or in --root.",
             )
-        self._check_depth()
         return CallRequest(program, label, arguments, line)
 
     def _asked_number(self, number: int, line: int) -> CallRequest:
-        level = self._levels[-1]
         label = numbered_label(str(number))
-        found = [each for each in (level.program, self._main) if label in each.functions]
-        program = found[0] if found else self._owner.file_of(str(number), self._main.text)
-        if program is None or label not in program.functions:
+        program = self._program_with(label, str(number))
+        if program is None:
             raise NumberError(
                 f"there is no sub-program O{number} that ends with M99",
                 f"Write O{number} and M99 in lines of their own, here or in {number}.ngc beside the program.",
             )
-        self._check_depth()
         return CallRequest(program, label, (), line, shares=True)
 
-    def _check_depth(self) -> None:
-        if len(self._levels[-1].calls) >= MOST_LEVELS:
+    def _program_with(self, label: str, file: str) -> Program | None:
+        """Return the program that has a sub-program: this one, the main one, or that of a file; None if none has.
+
+        Raises:
+            NumberError: calls are nested too deep.
+        """
+        level = self._levels[-1]
+        found = [each for each in (level.program, self._main) if label in each.functions]
+        program = found[0] if found else self._owner.file_of(file, self._main.text)
+        if program is None or label not in program.functions:
+            return None
+        if len(level.calls) >= MOST_LEVELS:
             raise NumberError(
                 f"sub-programs are nested more than {MOST_LEVELS} deep", "Does one call itself?"
             )
+        return program
 
     def _refused(self, error: Exception) -> ProgramError:
         """Return an error with the place in the program that it came from; nothing more is asked for."""
@@ -404,14 +405,12 @@ class RunningProgram:
         frame = frame_of(error, lambda name: traced[name][0] if name in traced else None)
         position = None if frame is None else traced[frame.name][1].text.position(frame.place)
         match error:
-            case NumberError():
+            case NumberError() | UsageError():
                 return ProgramError(error.what, position=position, hint=error.hint)
             case KeyError():
                 return ProgramError(
                     f"#<{error.args[0]}> has no value", position=position, hint="Set it first."
                 )
-            case UsageError():
-                return ProgramError(error.what, position=position, hint=error.hint)
         return ProgramError("the number is too large", position=position, hint="Look at the expression.")
 
 

@@ -259,13 +259,9 @@ def _is_code(text: str) -> bool:
 
 
 def _extend(inside: list[Item], row: Row) -> None:
-    if not row.text.strip():
-        if inside and isinstance(inside[-1], Span) and inside[-1].end == row.offset:
-            inside[-1].end = row.end
-        return
     if inside and isinstance(inside[-1], Span) and inside[-1].end == row.offset:
         inside[-1].end = row.end
-    else:
+    elif row.text.strip():
         inside.append(Span(row, row.end))
 
 

@@ -9,7 +9,7 @@ import re
 from functools import partial
 
 from polycnc.nc.rs274._functions import NumberError
-from polycnc.nc.rs274._line import parameter_name
+from polycnc.nc.rs274._line import bare
 from polycnc.nc.rs274._parameters import DEBUGS, Parameters
 
 _PART = re.compile(r"%(?:d|f|\.[0-9]f)|#<[^>]*>|#[0-9]+")
@@ -32,7 +32,7 @@ def text_python(text: str, line: int) -> str:
             form = _FORMATS.get(part, f"{{:{part[1:]}}}")
         elif part[1] != "<":
             parts.append(f"shown({int(part[1 : 1 + _MOST_DIGITS])}, L, {form!r})")
-        elif (name := parameter_name(part[2:-1])) == "_line":
+        elif (name := bare(part[2:-1])) == "_line":
             parts.append(repr(form.format(line)))
         else:
             parts.append(f"shown({name!r}, N, {form!r})")

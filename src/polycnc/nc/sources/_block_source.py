@@ -37,6 +37,7 @@ from dataclasses import dataclass
 from enum import Enum
 from typing import Protocol, TypeAlias, TypeVar, runtime_checkable
 
+from polycnc.machine import SnapshotError
 from polycnc.nc.records._block_records import Call
 from polycnc.nc.text._program import ProgramText
 from polycnc.nc.text._scan_plain import Block, Word
@@ -281,3 +282,8 @@ class BoundLanguage(Language, Protocol[HostT]):
     def attach(self, channel: HostT) -> None:
         """Take the channel, before it begins."""
         ...
+
+
+def elsewhere(text: ProgramText) -> SnapshotError:
+    """Return the refusal of a snapshot in which a program stands where it cannot go on."""
+    return SnapshotError(f"{text.name} cannot go on where the snapshot says", hint="use another snapshot")

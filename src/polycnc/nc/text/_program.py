@@ -6,17 +6,19 @@ error or a message is printed.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import string
 from difflib import get_close_matches
 from functools import cached_property
 from itertools import islice
 from pathlib import Path
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
 import numpy.typing as npt
+from pydantic import AfterValidator, Field
 
 from polycnc.errors import ProgramError, SourcePosition, UsageError
+from polycnc.machine import StrictModel, problem
 
 _UTF8_MARK = b"\xef\xbb\xbf"
 _UTF16_MARKS = (b"\xff\xfe", b"\xfe\xff")
@@ -29,23 +31,30 @@ _MOST_NAMES = 2_000  # of a folder that are compared with one that is not there
 MOST_LINE = 1 << 18  # bytes
 
 
-@dataclass(frozen=True, slots=True)
-class TextRules:
-    """Say what may stand in a block besides words and numbers.
+def _only_marks(characters: str) -> str:
+    # A letter, digit, sign or point here would turn plain words into statements.
+    if wrong := "".join(char for char in characters if char not in string.punctuation or char in "+-."):
+        raise problem(f"'{wrong}' cannot mark a statement", hint="use punctuation marks other than + - .")
+    return characters
 
-    `statement_characters`, and '=' always, hand a block to the language front end; a character that is
-    neither one of these nor part of a word is an error. With `semicolon_ends` a semicolon may end a line. With
-    `line_numbers` a block may begin with a bare number or a point, as the blocks of CPL do. With `blanks_in_numbers`
-    blanks between digits do not end a number.
-    """
 
-    semicolon_comments: bool = True
-    semicolon_ends: bool = False
-    parenthesis_comments: bool = True
-    unclosed_comments: bool = False
-    line_numbers: bool = False
-    blanks_in_numbers: bool = False
-    statement_characters: str = "[]#\"',*<>"
+class TextRules(StrictModel):
+    """What may stand in a block besides words."""
+
+    semicolon_comments: bool = Field(default=True, description="; begins a comment to the end of the line.")
+    semicolon_ends: bool = Field(default=False, description="; may end a block, at the end of its line.")
+    parenthesis_comments: bool = Field(default=True, description="( ) enclose a comment.")
+    unclosed_comments: bool = Field(default=False, description="A comment may end with its line.")
+    blanks_in_numbers: bool = Field(
+        default=False, description="Blanks between the digits of a number do not end it: X1 0 is X10."
+    )
+    line_numbers: bool = Field(
+        default=False, description="A block may begin with a bare number or a point: then it is a statement."
+    )
+    statement_characters: Annotated[str, AfterValidator(_only_marks)] = Field(
+        default="[]#\"',*<>",
+        description='Characters, besides "=", that make a block a statement.',
+    )
 
 
 class ProgramText:

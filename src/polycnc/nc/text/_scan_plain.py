@@ -140,7 +140,8 @@ class _LineReader:
         self.rules = rules
         # One character a byte, so that a place in the line is a place in the file.
         self.line = text.content[offset : text.line_end(offset)].decode("latin-1")
-        self.has_equals = "=" in self.line
+        plain = _WIDE_WORD if rules.blanks_in_numbers else _WORD
+        self.word_patterns = _word_patterns(rules) if "=" in self.line else (plain,)
         self.place = 0
         self.words: list[Word] = []
         self.flags = PLAIN
@@ -199,8 +200,7 @@ class _LineReader:
             raise self._misplaced(char)
 
     def _read_word(self) -> None:
-        plain = _WIDE_WORD if self.rules.blanks_in_numbers else _WORD
-        for pattern in _word_patterns(self.rules) if self.has_equals else (plain,):
+        for pattern in self.word_patterns:
             if match := pattern.match(self.line, self.place):
                 letter, index, sign, digits = match.groups()
                 digits = _ALL_BLANKS.sub("", digits)

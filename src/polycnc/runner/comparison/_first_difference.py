@@ -55,7 +55,7 @@ def _same_lines(a: bytes, b: bytes) -> tuple[int, int]:
 
 def _blocks(text: ProgramText, dialect: Dialect, offset: int, line: int) -> Iterator[tuple[int, str, object]]:
     """Yield line, text and what counts of each block."""
-    rules = dialect.text_rules()
+    rules = dialect.text
     while offset < len(text):
         end = text.next_line(offset)
         try:

@@ -15,7 +15,7 @@ from polycnc.controllers.apci.board._commanded import CommandedBoard
 from polycnc.controllers.apci.board._system_file import parse_system_file
 from polycnc.controllers.apci.board._system_text import system_file_text
 from polycnc.errors import UsageError
-from polycnc.machine import Array, Snapshot, SnapshotError, arrays_of
+from polycnc.machine import Array, Snapshot, arrays_of, damaged_snapshot
 
 _KIND = "board"
 _AXIS_VALUES = ("ControllerFlags", "GCR", "alarms")
@@ -39,9 +39,7 @@ def restore_state(board: CommandedBoard, snapshot: Snapshot) -> None:
     try:
         changes = _changes(board, data)
     except (KeyError, IndexError, TypeError, ValueError, UsageError) as error:
-        raise SnapshotError(
-            f"the snapshot of a {_KIND} is damaged: {error}", hint="use another one"
-        ) from error
+        raise damaged_snapshot(error, _KIND) from error
     snapshot.restore_state(arrays)
     board.clock.go_back(snapshot.cycle, epoch)
     for change in changes:
