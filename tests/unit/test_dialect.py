@@ -342,6 +342,7 @@ def test_the_dialect_is_guessed_and_says_why(program: str, name: str, reason: st
         ("G21\nG92 E0\n", "language of 3D printers", 2),
         ("G21\nG1 X3.5 Y7 E.25\n", "language of 3D printers", 2),
         ("'CUT\nVS,2,1\nM3,4,5,-.1\n", "language of ShopBot tools", 2),
+        ("IMF_PBL V1.0\nFASTABS X0\n", "NCP language", 1),
         ("IN;SP1;PU0,0;PD100,0;\n", "plotter language HPGL", 1),
     ],
 )

@@ -605,6 +605,15 @@ def test_only_variables_of_the_same_size_are_gone_back_to() -> None:
 
 # ------------------------------------------------------------------ wrong programs
 
+
+@pytest.mark.parametrize(("sign", "hint"), [("<", "LT or LE"), (">", "GT or GE")])
+def test_signs_of_other_languages_are_named_by_their_words(sign: str, hint: str) -> None:
+    made, _ = run(f"#1=2\nIF[#1{sign}3]GOTO5\nN5\n")
+    assert made.error is not None
+    assert made.error.hint is not None
+    assert hint in made.error.hint
+
+
 ERRORS = Path(__file__).parent.parent / "golden" / "macro_errors"
 
 

@@ -56,6 +56,7 @@ _UNREADABLE = (
     _sign(_PRINTER, rb"(?<![A-Z])G[ \t]*92[ \t]+E[-.0-9]"),
     _sign(_PRINTER, rb"(?<![A-Z])G[ \t]*0?1[ \t](?:[XYZF][-.0-9]+[ \t]+)+E[-.0-9]"),
     _sign("language of ShopBot tools", _LINE + rb"(?:[JM][XYZABS2-5]|VS)[ \t]*,[ \t]*[-.0-9]"),
+    _sign("NCP language of isel machines", rb"\A\n[ \t]*IMF_PBL"),
     _sign("plotter language HPGL", rb"\A\n[ \t]*IN;"),
 )
 _BETWEEN_BRACKETS = (

@@ -33,7 +33,11 @@ LEXICON = Lexicon(
     skip=rf"(?:{_BLANKS}|\([^)\r\n]*\))*",
     folded=("word", "letter"),
     short=_SHORT,
-    unfinished={"(": ("the comment is not closed", "Write ')' at its end, on the same line.")},
+    unfinished={
+        "(": ("the comment is not closed", "Write ')' at its end, on the same line."),
+        "<": ("'<' has no meaning here", "Compare with LT or LE."),
+        ">": ("'>' has no meaning here", "Compare with GT or GE, or NE for <>."),
+    },
 )
 _OPERATORS = Operators(
     infix={

@@ -84,7 +84,7 @@ class _Statements:
                 raise self._mixed(statements[-1])
             statements.append(self._statement())
         if statements and isinstance(statements[0], (While, End)) and skip:
-            raise misplaced(statements[0].at, "a loop cannot be skipped", "Take the '/' out.")
+            raise misplaced(statements[0].at, "a loop cannot be skipped", "Remove the '/'.")
         return Line(number, self._offset, label, skip, tuple(statements))
 
     def _mixed(self, before: Statement) -> Flaw:
