@@ -276,7 +276,7 @@ def test_examples_reset_leave_and_switch_channels() -> None:
     assert (second.sav, second.program) == (Sav.INACTIVE, "")
 
 
-@pytest.mark.covers("cpl.MCODS", "cpl.MCOPS", "cpl.MCODS.buffertype")
+@pytest.mark.covers("cpl.MCODS", "cpl.MCOPS", "cpl.MCODS.buffertype", "cpl.MCODS.constants")
 @pytest.mark.parametrize(
     ("line", "what"),
     [

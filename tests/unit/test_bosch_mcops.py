@@ -456,7 +456,7 @@ def test_parameters_that_a_service_does_not_know_are_refused(call: tuple[object,
     assert (rig.channel.mode, rig.channel.return_how, rig.channel.sav) == (5, 1, 1)
 
 
-@pytest.mark.covers("cpl.MCOPS", "cpl.MCOPS.7", "cpl.ncs.102")
+@pytest.mark.covers("cpl.MCOPS", "cpl.MCOPS.7", "cpl.ncs.102", "cpl.MCODS.constants")
 def test_parameters_have_their_types() -> None:
     rig = Rig()
     assert rig(7.0, 2.0, 4.0) == 0

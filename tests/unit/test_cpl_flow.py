@@ -562,7 +562,7 @@ def test_wait_in_cpl_and_nc_blocks() -> None:
         ("WAIT(,1000,#E%)", None, None, 1000),
         ("WAIT(,TIME%)", None, None, 250),
         ("WAIT(IC(1,1,1)=TRUE)", (1, 1, 1), True, None),
-        ("WAIT(IC(2,0,2)=(E1? OR E2?))", (2, 0, 2), False, None),
+        ("WAIT(IC(2,0,2)=(E1? OR E2?))", (2, 0, 2), True, None),
         ("WAIT(NOT IC(3,2,1),,#E%)", (3, 2, 1), False, None),
         ("WAIT(IC(4,4,1)=E7?,250,#E%)", (4, 4, 1), True, 250),
         ("WAIT(NOT (IC(4)))", (4,), False, None),
@@ -579,7 +579,7 @@ def test_wait_names_its_condition_duration_and_result(
         return state[0]
 
     host = RecordingHost({"IC": ic})
-    ran = Ran(f"5 TIME%=250 : E1?=FALSE : E2?=FALSE : E7?=TRUE\n10 {text}", host, wait=2)
+    ran = Ran(f"5 TIME%=250 : E1?=FALSE : E2?=TRUE : E7?=TRUE\n10 {text}", host, wait=2)
     event = ran.events[0]
     assert isinstance(event, Waiting)
     assert event.duration_ms == duration

@@ -151,6 +151,7 @@ def test_dialog_commands_take_the_last_that_is_allowed(tmp_path: Path) -> None:
         -1,
         -1,
     ]
+    assert [Shown(f"1 COL({code}) : LIN(5,5,9,5)", tmp_path).colour(7, 5) for code in (0, 7)] == [0, 7]
     corners = Shown("1 LIN(0,0,0,374) : LIN(632,374) : LIN(632,0) : LIN(0,0)", tmp_path)
     assert [corners.colour(x, y) for x in (0, 632) for y in (0, 1, 373, 374)] == [1] * 8
     cleared = Shown("1 LIN(10,374,40,374) : LIN(0,0,0,9) : LIN(632,3,632,5) : CLR", tmp_path)

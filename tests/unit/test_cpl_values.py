@@ -235,6 +235,7 @@ def declared(text: str = DECLARED) -> PermanentMemory:
 @pytest.mark.covers("cpl.var.permanent", "cpl.var.@_R", "cpl.ex.517")
 def test_permanent_variables_outlive_the_program() -> None:
     host = RecordingHost(permanent=declared())
+    assert {f"@{number}" for number in range(1, 101)} <= set(declared())
     Ran("10 NUMBER1% = 1\n20 #NUMBER2% = 2\n30 @36% = 3\n40 @ABCD% = 4\n50 @_R(100)=1.12345678901234", host)
     assert (host.permanent["@36"], host.permanent["@ABCD%"]) == (3, 4)
     assert host.permanent["@_R"][100] == 1.12345678901234

@@ -100,6 +100,7 @@ def test_a_dialog_waits_until_its_channel_is_free(panel: Panel) -> None:
 
 @pytest.mark.covers(
     "cpl.dialog.editor",
+    "cpl.dialog.call",
     "cpl.INP#0",
     "cpl.PRN#0",
     "cpl.nc.Q900",

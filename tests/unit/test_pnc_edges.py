@@ -247,7 +247,19 @@ def test_what_another_channel_does_is_told_of_it_alone(wide: Living) -> None:
 
 
 @pytest.mark.covers(
-    *rows("MCODS", "MCODS.36", "MCODS.5", "MCODS.25", "MCODS.8", "SD.5.3.3", "SD.5.3.1", "SD.205.3.s")
+    *rows(
+        "MCODS",
+        "MCODS.36",
+        "MCODS.5",
+        "MCODS.25",
+        "MCODS.8",
+        "SD.5.3.3",
+        "SD.5.3.1",
+        "SD.205.3.s",
+        "SD.5.3.2",
+        "SD.205.2.s",
+        "SD.12.2",
+    )
 )
 def test_a_spindle_whose_override_is_0_stands_and_is_told_to_turn(wide: Living) -> None:
     wide.start("N1 S900 M3\nN2 G4 F9\n", 300)
@@ -258,6 +270,8 @@ def test_a_spindle_whose_override_is_0_stands_and_is_told_to_turn(wide: Living) 
     speeds = sd(5, 3, 1), sd(5, 3, 3), sd(205, 3, 1), sd(5, 3, 2), sd(12, 1)
     wide.pnc.control.set_overrides(spindle=1.0)
     wide.pnc.reset(channel=1)
+    still = told(wide, "N1 S950 M5\nN2 G1 X0 F60000\n3 WAIT", "SD(5,3,2)", "SD(205,2,1)", "SD(12,2)")
+    assert still == [950, 950, 0]
     assert found == [900, 0, 0, 0, 1]
     assert speeds == (0, 0, 0, 900, 3)
 

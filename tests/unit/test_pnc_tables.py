@@ -97,7 +97,8 @@ def test_tables_of_shifts_are_selected_by_their_numbers(living: Living) -> None:
 def test_shifts_are_added_to_and_given_in_mm_or_inch(living: Living) -> None:
     found = told(
         living,
-        '1 DIM T$(30) : T$="/user/A1.npv" : FXCR(1,T$) : FXC(1,54,T$)=20 : FXC(-1,54,T$)=2 : FXC("Z",54,T$,2)=10/25.4\n'
+        '1 DIM T$(30) : T$="/user/A1.npv" : FXCR(1,T$) : FXC(1,54,T$)=7\n'
+        '1 FXC(1,54,T$)=20 : FXC(-1,54,T$)=2\n1 FXC("Z",54,T$,2)=10/25.4\n'
         '2 FXC("Z",254,T$)=5 : FXC("-Z",254,T$)=3 : FXC("-C",54,T$)=20 : FXC("-C",54,T$)=20 : FXC("C",55,T$,2)=30\n'
         '3 FXC(1,55,T$,0)=7.5 : FXC("X",59,1,2)=2 : FXC("X",58,1,0)=-7\n'
         '4 FXC(1,56,T$)=30 : FXC(-1,56,T$,2)=-2 : FXC("Z",57,1)=12 : FXC("-Z",57,1,2)=3 : FXC("-Z",57,1,0)=1',
