@@ -59,6 +59,9 @@ def test_program_of_the_manual() -> None:
 @pytest.mark.covers("fanuc.param.0000_2")
 @pytest.mark.covers("fanuc.modal.G.5.0", "fanuc.modal.G.5.1")
 def test_the_unit_at_power_on_is_that_of_the_setting(inch: bool) -> None:
+    session = fwlib.Session()
+    session.attach(0, PowerMate(inch_input=inch))
+    assert g(session, session.cnc_allclibhndl()[1], 5) == (0 if inch else 1)  # before any program
     library, handle, control = executing("G1 X1. F40.", "G1", inch_input=inch)
     assert g(library, handle, 5, 0) == (0 if inch else 1)
     control.reset()

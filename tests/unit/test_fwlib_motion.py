@@ -611,7 +611,10 @@ def test_an_axis_whose_servo_is_off_does_not_move(bit: int) -> None:
     control.advance(200)
     give(library, handle, 4, 1 << bit)
     control.advance(300)
-    assert [each.velocity == 0.0 for each in control.status().axes.values()][bit]
+    assert all(each.velocity == 0.0 for each in control.status().axes.values())
+    give(library, handle, 4, 0)
+    control.advance(300)  # the others go on; this one wants its key again
+    assert [each.velocity > 0.0 for each in control.status().axes.values()] == [k != bit for k in range(6)]
 
 
 @pytest.mark.covers("fanuc.cnc_opdi.number.12")

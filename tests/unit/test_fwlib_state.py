@@ -579,7 +579,7 @@ def test_what_goes_wrong_sets_the_bit_of_its_group() -> None:
     for control, text in (
         (limit, "G1 Y9. F600"),
         (servo, "G1 X50. F6000"),
-        (PowerMate(), "G1 X="),
+        (PowerMate(), "G1 B5."),
     ):
         put(control, 7, text)
         control.cycle_start()
