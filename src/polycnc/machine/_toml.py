@@ -228,6 +228,8 @@ def _explain(
     match kind:
         case "problem":
             what, hint = context["message"], context["hint"]
+        case "value_error":
+            what = str(context["error"])
         case "extra_forbidden":
             what = f"unknown key '{key}' in {_table_name(path[:-1])}"
             hint = _suggest(key, _keys(owner))
@@ -249,6 +251,8 @@ def _explain(
             hint = f"allowed: {(allowed or f'value {_BOUNDS[kind]} {limit}').replace('value', key)}"
         case _ if kind in _WANTED:
             wanted, example = _WANTED[kind]
+            if kind == "tuple_type" and (opening := _opening(field, key)).startswith("[["):
+                wanted, example = "an array of tables", opening
             is_element = bool(path) and isinstance(path[-1], int)
             what = f"{'an element of ' if is_element else ''}'{key}' must be {wanted}, not {shown}"
             hint = f"write {wanted}, like {example}"
@@ -294,8 +298,11 @@ def _opening(field: FieldInfo | None, key: str) -> str:
     annotation = field.annotation if field else None
     if isinstance(annotation, type) and issubclass(annotation, BaseModel):
         return f"[{key}]"
-    if get_origin(annotation) is tuple and get_origin(get_args(annotation)[0]) is not None:
-        return f"[[{key}]]"
+    if get_origin(annotation) is tuple:
+        element = get_args(annotation)[0]  # a model, or a choice of models with tags
+        is_model = isinstance(element, type) and issubclass(element, BaseModel)
+        if is_model or get_origin(element) is not None:
+            return f"[[{key}]]"
     return f"'{key} = ...'"
 
 

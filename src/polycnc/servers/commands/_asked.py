@@ -86,7 +86,7 @@ def carry_out(machine: ServedMachine, asked: Mapping[str, Any]) -> object:
     try:
         values = model_of(name).model_validate(dict(asked)).model_dump(exclude={"command"})
     except ValidationError as error:
-        raise NotMeantError(f"{name}: {_told(error)}", _takes(row)) from None
+        raise NotMeantError(f"{name}: {first_problem(error)}", _takes(row)) from None
     own = machine.own.get(name)
     try:
         return row.call(control, **values) if own is None else own(**values)
@@ -96,10 +96,15 @@ def carry_out(machine: ServedMachine, asked: Mapping[str, Any]) -> object:
         raise ControlError(Refusal.DATA, error.what, hint=error.hint) from error
 
 
-def _told(error: ValidationError) -> str:
+_PLAIN = {"extra_forbidden": "there is no such value", "missing": "it is missing"}
+
+
+def first_problem(error: ValidationError) -> str:
+    """Return what is wrong first, after its place."""
     first = error.errors(include_url=False, include_input=False, include_context=False)[0]
     place = ".".join(str(each)[:32] for each in first["loc"])
-    return f"{place}: {first['msg'][:200]}"
+    what = _PLAIN.get(first["type"]) or first["msg"].removeprefix("Value error, ")[:200]
+    return f"{place}: {what}" if place else what
 
 
 def _takes(row: Command) -> str:

@@ -8,7 +8,7 @@ from typing import Any, TypeVar
 from pydantic import BaseModel, ValidationError
 from starlette.requests import Request
 
-from polycnc.servers.commands import NotMeantError
+from polycnc.servers.commands import NotMeantError, first_problem
 from polycnc.servers.http._guard import TooLargeError
 
 M = TypeVar("M", bound=BaseModel)
@@ -61,7 +61,5 @@ def checked(model: type[M], found: dict[str, Any]) -> M:
     try:
         return model.model_validate(found)
     except ValidationError as error:
-        first = error.errors(include_url=False, include_input=False, include_context=False)[0]
-        place = ".".join(str(each)[:32] for each in first["loc"])
         takes = ", ".join(model.model_fields)
-        raise NotMeantError(f"{place}: {first['msg'][:200]}".lstrip(": "), f"It takes {takes}.") from None
+        raise NotMeantError(first_problem(error), f"It takes {takes}.") from None

@@ -13,7 +13,7 @@ from polycnc.cnc import Control, RunState
 from polycnc.controllers.fanuc import PowerMate
 from polycnc.errors import UsageError
 from polycnc.machine import StrictModel
-from polycnc.servers.commands import COMMANDS, carry_out, model_of
+from polycnc.servers.commands import COMMANDS, carry_out, first_problem, model_of
 from polycnc.servers.focas import Fault, FaultKind
 from polycnc.servers.machines import ServedMachine
 
@@ -274,12 +274,7 @@ def _check_connection(name: str) -> Callable[[ServedMachine, Any], None]:
 
 
 def _refused(error: ValidationError) -> UsageError:
-    first = error.errors(include_url=False, include_input=False, include_context=False)[0]
-    place = ".".join(str(each)[:32] for each in first["loc"])
-    what = str(first["msg"])[:200]
-    return UsageError(
-        f"{place}: {what}" if place else what, hint="See the values of its row in the reference."
-    )
+    return UsageError(first_problem(error), hint="See the values of its row in the reference.")
 
 
 ROWS = (
