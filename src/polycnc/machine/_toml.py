@@ -250,15 +250,20 @@ def _explain(
             limit = next(iter(context.values()), "")
             hint = f"allowed: {(allowed or f'value {_BOUNDS[kind]} {limit}').replace('value', key)}"
         case _ if kind in _WANTED:
-            wanted, example = _WANTED[kind]
-            if kind == "tuple_type" and (opening := _opening(field, key)).startswith("[["):
-                wanted, example = "an array of tables", opening
+            wanted, example = _wanted(kind, field, key)
             is_element = bool(path) and isinstance(path[-1], int)
             what = f"{'an element of ' if is_element else ''}'{key}' must be {wanted}, not {shown}"
             hint = f"write {wanted}, like {example}"
         case _:
             what = f"'{key}': {detail['msg'][:1].lower()}{detail['msg'][1:]}"
     return _Problem(path, kind, what, hint, locator.position(path))
+
+
+def _wanted(kind: str, field: FieldInfo | None, key: str) -> tuple[str, str]:
+    """Return what a key has to be, and how that is written."""
+    if kind == "tuple_type" and (opening := _opening(field, key)).startswith("[["):
+        return "an array of tables", opening
+    return _WANTED[kind]
 
 
 def _length_text(context: Mapping[str, Any], what: str) -> str:
