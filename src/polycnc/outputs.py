@@ -209,7 +209,7 @@ def _copied(path: Path) -> Iterator[Path]:
     with tempfile.TemporaryDirectory(prefix="polycnc-") as folder:
         content = Path(folder, path.name)
         yield content
-        with content.open("rb") as source, path.open("wb") as sink:
+        with _told(path), content.open("rb") as source, path.open("wb") as sink:
             shutil.copyfileobj(source, sink)
 
 

@@ -242,5 +242,5 @@ def test_a_script_that_cannot_be_is_refused(text: str, said: str, tmp_path: Path
 
 
 def test_a_script_that_is_not_there_is_refused(tmp_path: Path) -> None:
-    with pytest.raises(UsageError, match="cannot be read"):
+    with pytest.raises(UsageError, match="cannot read"):
         load_faults(tmp_path / "none.toml")

@@ -64,6 +64,7 @@ NO_LANGUAGE = "dialect 'din' reads no variables, expressions or program flow (1 
         ("G1 Y,5", "1:4: 'Y,5' has a comma in its number"),
         ("G1 (1,5) Y2,5", "1:10: 'Y2,5' has a comma in its number"),
         ("G1 F1,250.5", "1:4: 'F1,250.5' is no number"),
+        ("G1 Y1O F500", "1:4: 'Y1O' has the letter O in its number"),
         ("G1 Y5 Xabc F100", "1:7: 'X' has no number"),
         ("G1X10,Y5", "1:6: ',Y' (a chamfer or a rounding between blocks) is not known here"),
         ("G1 X10,", "1:7: ',' is not allowed in a block"),

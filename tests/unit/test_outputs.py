@@ -277,6 +277,15 @@ def test_a_full_disk_is_told_with_the_file(special: bool, here: Path) -> None:
 
 
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="needs the device of a full disk")
+def test_a_full_device_is_told_where_the_file_is_copied_to_it() -> None:
+    path = Path("/dev/full")
+    with pytest.raises(OSError, match="No space left") as caught:  # noqa: SIM117
+        with outputs.complete_or_absent(path, rewritten=True) as partial:
+            partial.write_bytes(b"x" * 99)
+    assert caught.value.filename == "/dev/full"
+
+
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="needs the device of a full disk")
 def test_a_log_on_a_full_disk_is_told_with_the_file() -> None:
     log = Log(Path("/dev/full"))
     acts: list[Callable[[], None]] = [lambda: log.write("ready", port=8193), log.close]

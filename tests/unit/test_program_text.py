@@ -76,6 +76,9 @@ def test_what_cannot_be_read_is_a_usage_error(tmp_path: Path) -> None:
         ProgramText.from_path(tmp_path)
     with pytest.raises(UsageError, match="UTF-16"):
         ProgramText.from_text("G1".encode("utf-16"))
+    for coding in ("utf-16-le", "utf-16-be"):  # without a mark
+        with pytest.raises(UsageError, match="UTF-16"):
+            ProgramText.from_text("G1 X5".encode(coding))
 
 
 @pytest.mark.parametrize("newline", ["\n", "\r\n", "\r"])

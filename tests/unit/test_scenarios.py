@@ -220,11 +220,11 @@ def test_what_cannot_be_is_refused_before_anything_happens() -> None:
 @pytest.mark.parametrize(
     ("text", "said"),
     [
-        ("", "step"), ('[[step]]\nname="a"\ndo="part"\n', "begins at one of"),
+        ("", "add the line [[step]]"), ('[[step]]\nname="a"\ndo="part"\n', "begins at one of"),
         ('[[step]]\nname="a"\ndo="part"\nat_s=1.0\nat_line=3\n', "begins at one of"),
         ('[[step]]\nname="a"\ndo="part"\nat_s=1.0\nwhat=3\n', "what"),
         ('[[step]]\nname="a"\ndo="part"\nat_s=1.0\ntimes=3\n', "`times` and `every_s`"),
-        ('[[step]]\nname="a"\ndo="part"\nat_s=1.0\nafter="b"\n', "no step before it is called b"),
+        ('[[step]]\nname="a"\ndo="part"\nat_s=1.0\nafter="b"\n', "day.toml:5:1: step a: no step before it is called b"),
         ('[[step]]\nname="a"\ndo="part"\nat_s=nan\n', "at_s"),
         ('[[step]]\nname="a"\ndo="part"\nat_request=3\n', "door"),
     ],

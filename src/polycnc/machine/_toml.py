@@ -228,6 +228,8 @@ def _explain(
     match kind:
         case "problem":
             what, hint = context["message"], context["hint"]
+        case "value_error":
+            what = str(context["error"])
         case "extra_forbidden":
             what = f"unknown key '{key}' in {_table_name(path[:-1])}"
             hint = _suggest(key, _keys(owner))
@@ -248,13 +250,20 @@ def _explain(
             limit = next(iter(context.values()), "")
             hint = f"allowed: {(allowed or f'value {_BOUNDS[kind]} {limit}').replace('value', key)}"
         case _ if kind in _WANTED:
-            wanted, example = _WANTED[kind]
+            wanted, example = _wanted(kind, field, key)
             is_element = bool(path) and isinstance(path[-1], int)
             what = f"{'an element of ' if is_element else ''}'{key}' must be {wanted}, not {shown}"
             hint = f"write {wanted}, like {example}"
         case _:
             what = f"'{key}': {detail['msg'][:1].lower()}{detail['msg'][1:]}"
     return _Problem(path, kind, what, hint, locator.position(path))
+
+
+def _wanted(kind: str, field: FieldInfo | None, key: str) -> tuple[str, str]:
+    """Return what a key has to be, and how that is written."""
+    if kind == "tuple_type" and (opening := _opening(field, key)).startswith("[["):
+        return "an array of tables", opening
+    return _WANTED[kind]
 
 
 def _length_text(context: Mapping[str, Any], what: str) -> str:
@@ -294,8 +303,11 @@ def _opening(field: FieldInfo | None, key: str) -> str:
     annotation = field.annotation if field else None
     if isinstance(annotation, type) and issubclass(annotation, BaseModel):
         return f"[{key}]"
-    if get_origin(annotation) is tuple and get_origin(get_args(annotation)[0]) is not None:
-        return f"[[{key}]]"
+    if get_origin(annotation) is tuple:
+        element = get_args(annotation)[0]  # a model, or a choice of models with tags
+        is_model = isinstance(element, type) and issubclass(element, BaseModel)
+        if is_model or get_origin(element) is not None:
+            return f"[[{key}]]"
     return f"'{key} = ...'"
 
 

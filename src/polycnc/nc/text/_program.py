@@ -6,6 +6,7 @@ error or a message is printed.
 
 from __future__ import annotations
 
+import re
 import string
 from difflib import get_close_matches
 from functools import cached_property
@@ -21,7 +22,7 @@ from polycnc.errors import ProgramError, SourcePosition, UsageError
 from polycnc.machine import StrictModel, problem
 
 _UTF8_MARK = b"\xef\xbb\xbf"
-_UTF16_MARKS = (b"\xff\xfe", b"\xfe\xff")
+_UTF16 = re.compile(rb"\xff\xfe|\xfe\xff|(?:[^\0]\0){2}|(?:\0[^\0]){2}")  # with its mark, and without
 _NEWLINE = ord("\n")
 _RETURN = ord("\r")
 _PIECE_BYTES = 1 << 20
@@ -64,7 +65,7 @@ class ProgramText:
     """
 
     def __init__(self, name: str, content: bytes, first_line: int = 1) -> None:
-        if content[:2] in _UTF16_MARKS:
+        if _UTF16.match(content):
             raise UsageError(f"{name}: the file is UTF-16 text", hint="Save it as ASCII or UTF-8.")
         self.name = name
         self.first_line = first_line

@@ -130,6 +130,9 @@ def _word_patterns(rules: TextRules) -> tuple[re.Pattern[str], ...]:
     return re.compile(_LETTER + "([0-9]++)" + value), re.compile(_LETTER + "()" + value), _WORD
 
 
+_LETTER_O = re.compile(r"([A-Za-z][+-]?[0-9.]+)[Oo]\Z")  # X1O, typed for X10
+
+
 class _LineReader:
     """Read one line from left to right; the first error, or the first sign of a statement, decides."""
 
@@ -219,6 +222,11 @@ class _LineReader:
             raise self._misplaced(char)
         else:
             letter = self.line[self.place]
+            if found := _LETTER_O.search(self.line, 0, self.place + 1):
+                self.place = found.start()
+                raise self._error(
+                    f"'{found[0]}' has the letter O in its number", f"Write {found[1]}0 with the digit 0."
+                )
             raise self._error(f"'{letter}' has no number", number_hint(letter, self.line[: self.place]))
 
     def _add(self, letter: str, sign: str, digits: str, index: int | None = None) -> None:

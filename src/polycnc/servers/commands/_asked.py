@@ -96,11 +96,15 @@ def carry_out(machine: ServedMachine, asked: Mapping[str, Any]) -> object:
         raise ControlError(Refusal.DATA, error.what, hint=error.hint) from error
 
 
+_PLAIN = {"extra_forbidden": "there is no such value", "missing": "it is missing"}
+
+
 def told(error: ValidationError) -> str:
-    """Return the first thing that is wrong, after its place."""
+    """Return what is wrong first, after its place."""
     first = error.errors(include_url=False, include_input=False, include_context=False)[0]
     place = ".".join(str(each)[:32] for each in first["loc"])
-    return f"{place}: {first['msg'][:200]}".removeprefix(": ")
+    what = _PLAIN.get(first["type"]) or first["msg"].removeprefix("Value error, ")[:200]
+    return f"{place}: {what}" if place else what
 
 
 def _takes(row: Command) -> str:

@@ -16,8 +16,7 @@ from pydantic import Field, model_validator
 
 from polycnc.controllers.fanuc import PowerMate
 from polycnc.controllers.fanuc.wire import LAYOUTS
-from polycnc.errors import UsageError
-from polycnc.machine import StrictModel, parse_toml, validate
+from polycnc.machine import StrictModel, load_toml, validate
 
 
 class FaultKind(StrEnum):
@@ -98,11 +97,7 @@ def load_faults(path: Path) -> tuple[Fault, ...]:
     Raises:
         UsageError: It cannot be read, or says what cannot be.
     """
-    try:
-        text = path.read_text(encoding="utf-8")
-    except (OSError, UnicodeDecodeError) as error:
-        raise UsageError(f"{path}: cannot be read: {error}", hint="Give a TOML file of faults.") from None
-    return validate(_Script, *parse_toml(text, str(path))).fault
+    return validate(_Script, *load_toml(path)).fault
 
 
 @dataclass(frozen=True, slots=True)

@@ -7,7 +7,8 @@ from typing import Annotated, Any, Self
 
 from pydantic import Field, PrivateAttr, model_validator
 
-from polycnc.machine import StrictModel, load_toml, parse_toml, validate
+from polycnc.errors import SourcePosition
+from polycnc.machine import KeyPath, Locator, StrictModel, load_toml, parse_toml, problem, validate
 
 MOST_STEPS = 1000
 _MOST_TIMES = 100_000
@@ -27,7 +28,7 @@ class When(StrictModel):
     @model_validator(mode="after")
     def _check(self) -> Self:
         if sum(each is not None for each in (self.above, self.below, self.equals)) != 1:
-            raise ValueError("a condition has one of `above`, `below`, `equals`")
+            raise problem("a condition has one of `above`, `below`, `equals`")
         return self
 
 
@@ -57,22 +58,22 @@ class Step(StrictModel):
     def _check(self) -> Self:
         starts = [each for each in (self.at_s, self.at_request, self.at_line, self.when) if each is not None]
         if len(starts) != 1:
-            raise ValueError("a step begins at one of `at_s`, `at_request`, `at_line`, `when`")
+            raise problem("a step begins at one of `at_s`, `at_request`, `at_line`, `when`")
         if self.after is not None and self.at_s is None:
-            raise ValueError("`after` goes with `at_s`: the time since that step began")
+            raise problem("`after` goes with `at_s`: the time since that step began", at=("after",))
         if self.program is not None and self.at_line is None:
-            raise ValueError("`program` goes with `at_line`")
+            raise problem("`program` goes with `at_line`", at=("program",))
         counts = self.at_request is not None or self.for_requests is not None
         if counts and self.door is None:
-            raise ValueError("requests are those of a `door`")
+            raise problem("requests are those of a `door`")
         if self.for_s is not None and self.for_requests is not None:
-            raise ValueError("a step ends after `for_s` or after `for_requests`")
+            raise problem("a step ends after `for_s` or after `for_requests`", at=("for_requests",))
         if (self.times > 1) != (self.every_s is not None):
-            raise ValueError("a step that is repeated has `times` and `every_s`")
+            raise problem("a step that is repeated has `times` and `every_s`")
         if self.every_s is not None and self.for_s is not None and self.for_s >= self.every_s:
-            raise ValueError("`for_s` is shorter than `every_s`")
+            raise problem("`for_s` is shorter than `every_s`", at=("for_s",))
         if self.every_s is not None and self.for_requests is not None:
-            raise ValueError("a step that is repeated ends after `for_s`")
+            raise problem("a step that is repeated ends after `for_s`", at=("for_requests",))
         return self
 
 
@@ -82,20 +83,27 @@ class Script(StrictModel):
     title: Annotated[str, Field(max_length=200)] = ""
     step: Annotated[tuple[Step, ...], Field(min_length=1, max_length=MOST_STEPS)]
     _source: str = PrivateAttr("")
+    _locator: Locator | None = PrivateAttr(None)
 
     @property
     def source(self) -> str:
         """The text that it was read from."""
         return self._source
 
+    def position(self, path: KeyPath) -> SourcePosition | None:
+        """Return where a key is in its text, None without one."""
+        return None if self._locator is None else self._locator.position(path)
+
     @model_validator(mode="after")
     def _check(self) -> Self:
         known: set[str] = set()
-        for each in self.step:
+        for index, each in enumerate(self.step):
             if each.name in known:
-                raise ValueError(f"two steps are called {each.name}")
+                raise problem(f"two steps are called {each.name}", at=("step", index, "name"))
             if each.after is not None and each.after not in known:
-                raise ValueError(f"step {each.name}: no step before it is called {each.after}")
+                raise problem(
+                    f"step {each.name}: no step before it is called {each.after}", at=("step", index, "after")
+                )
             known.add(each.name)
         return self
 
@@ -106,8 +114,9 @@ def load_script(path: Path) -> Script:
     Raises:
         UsageError: It cannot be read, or says what cannot be.
     """
-    script = validate(Script, *load_toml(path))
-    script._source = path.read_text("utf-8-sig")
+    data, locator = load_toml(path)
+    script = validate(Script, data, locator)
+    script._source, script._locator = path.read_text("utf-8-sig"), locator
     return script
 
 
@@ -117,6 +126,7 @@ def read_script(text: str, name: str = "scenario") -> Script:
     Raises:
         ConfigurationError: It says what cannot be.
     """
-    script = validate(Script, *parse_toml(text, name))
-    script._source = text
+    data, locator = parse_toml(text, name)
+    script = validate(Script, data, locator)
+    script._source, script._locator = text, locator
     return script

@@ -9,7 +9,7 @@ from typing import Any
 
 from pydantic import ValidationError
 
-from polycnc.errors import PolycncError, UsageError
+from polycnc.errors import ConfigurationError, PolycncError, UsageError
 from polycnc.machine import StrictModel
 from polycnc.servers.commands import told
 from polycnc.servers.focas import Fault, FaultKind, Faults, Plan
@@ -75,7 +75,7 @@ class Story:
         self.script = script
         self._machine = machine
         self._log = log or Log()
-        self._courses = [_course(step, machine) for step in script.step]
+        self._courses = [_course(script, index, machine) for index in range(len(script.step))]
         self._by_name = {each.step.name: each for each in self._courses}
         self._requests: dict[str, int] = {}
         self.happened: list[Happened] = []
@@ -259,31 +259,45 @@ class _ConnectionFaults(Faults):
 # ---------------------------------------------------------------------- checks
 
 
-def _course(step: Step, machine: ServedMachine) -> _Course:
+def _course(script: Script, index: int, machine: ServedMachine) -> _Course:
     """Return a step that has not begun, checked against the machine."""
+    step, at = script.step[index], "do"
     try:
         action = ACTIONS.get(step.do)
         if action is None:
             raise UsageError(f"nothing is called '{step.do}'", hint=f"Actions are {', '.join(ACTIONS)}.")
+        at = "door"
         _check_door(step, action)
+        at = "for_s" if step.for_requests is None else "for_requests"
         if (step.for_s is not None or step.for_requests is not None) and not action.ends:
             raise UsageError(
                 f"{step.do} has no end", hint="Leave the time away, and add a step that undoes it."
             )
-        values: Any = (
-            step.values if action.values is StrictModel else action.values.model_validate(dict(step.values))
-        )
+        at = "with"
+        values = _values(step, action)
         action.check(machine, values)
+        at = "at_line" if step.when is None else "when"
         if step.when is not None or step.at_line is not None:
             if machine.control is None:
                 raise UsageError("this machine has no status of a control", hint="Begin at a time.")
             if step.when is not None:
                 read_path(machine.control.status(), step.when.value)
-    except ValidationError as error:
-        raise UsageError(f"step '{step.name}': {told(error)}", hint="See its row in the reference.") from None
     except PolycncError as error:
-        raise UsageError(f"step '{step.name}': {error.what}", hint=error.hint) from None
+        raise ConfigurationError(
+            f"step '{step.name}': {error.what}",
+            hint=error.hint,
+            position=script.position(("step", index, at)),
+        ) from None
     return _Course(step, action, values)
+
+
+def _values(step: Step, action: Action) -> Any:
+    if action.values is StrictModel:
+        return step.values
+    try:
+        return action.values.model_validate(dict(step.values))
+    except ValidationError as error:
+        raise UsageError(told(error), hint="See its row in the reference.") from None
 
 
 def _check_door(step: Step, action: Action) -> None:
