@@ -265,6 +265,6 @@ def test_a_leaning_tool_in_a_fixture(monkeypatch: pytest.MonkeyPatch) -> None:
         cutting.add(course)
         found = [str(each.kind) for each in cutting.tally.contacts.all() if "fixture" in each.kind]
         assert sorted(set(found)) == kinds, text
-    monkeypatch.setattr(_fixtures, "MOST_VOXELS", 2000)
-    with pytest.raises(UsageError, match="the fixtures have more than 2,000 cells"):
+    monkeypatch.setattr(_fixtures, "MOST_VOXELS", 1999)
+    with pytest.raises(UsageError, match="the fixtures have more than 1,999 cells"):
         solid_fixtures_of(("box=0,0,0,5,5,5", "box=0,0,0,5,5,5"), 0.5)
