@@ -31,6 +31,7 @@ from polycnc.stock import (
     TurningCutting,
     Voxels,
     fixtures_of,
+    solid_fixtures_of,
 )
 
 Floats = npt.NDArray[np.float64]
@@ -168,7 +169,8 @@ class MachiningCollector:
         if self._turned or undercuts:
             if not self._turned:
                 form = form.told(course, mills)
-            solid = TurnedCutting(form.voxels(course, mills), mills)
+            body = form.voxels(course, mills)
+            solid = TurnedCutting(body, mills, solid_fixtures_of(form.fixtures, body.cell_mm))
             solid.add(course)
             return self._what_was_cut(solid.stock, solid.tally, form, course, given)
         stock = form.body(course, mills)

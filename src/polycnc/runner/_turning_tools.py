@@ -14,7 +14,7 @@ from polycnc.stock import Insert, Tool, ToolKind, grooving_tool, iso_insert, thr
 
 _INSIDE = re.compile(r"\bbor(?:e|ing)\b|\binside\b|\binternal\b", re.IGNORECASE)
 _GROOVE = re.compile(r"\b(?:groov|part(?:ing)?[ -]?off|parting|cut[ -]?off)", re.IGNORECASE)
-_THREAD = re.compile(r"\bthread", re.IGNORECASE)
+_THREAD = re.compile(r"^(?!.*\bmill).*\bthread", re.IGNORECASE)
 _MM = re.compile(r"(\d+(?:\.\d*)?|\.\d+)\s*mm\b", re.IGNORECASE)
 _DEG = re.compile(r"(\d+(?:\.\d*)?)\s*(?:deg|°)", re.IGNORECASE)
 _THREAD_DEG = 60.0

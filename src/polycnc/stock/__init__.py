@@ -5,7 +5,7 @@ from polycnc.stock._contacts import Contact, ContactKind, Idle
 from polycnc.stock._course import Course
 from polycnc.stock._cutting import Cutting
 from polycnc.stock._engagement import Engagement
-from polycnc.stock._fixtures import check_fixtures, fixtures_of
+from polycnc.stock._fixtures import check_fixtures, fixtures_of, solid_fixtures_of
 from polycnc.stock._form import Form, file_of
 from polycnc.stock._insert import Insert, InsertKind, grooving_tool, iso_insert, threading_tool
 from polycnc.stock._mesh import Mesh
@@ -64,6 +64,7 @@ __all__ = [
     "iso_insert",
     "make_profile",
     "read_stl",
+    "solid_fixtures_of",
     "stock_of_remarks",
     "threading_tool",
     "tool_number",

@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
+from typing import TypeVar
 
 from polycnc.errors import UsageError
 from polycnc.stock._form import numbers_of
-from polycnc.stock._solid import solid_stock
+from polycnc.stock._solid import solid_stock, solid_voxels
 from polycnc.stock._stock import MOST_CELLS, Box, Stock
+from polycnc.stock._voxels import MOST_VOXELS, Voxels
+
+T = TypeVar("T", Stock, Voxels)
 
 MOST_FIXTURES = 50
 _FORMS = "box=X0,Y0,Z0,X1,Y1,Z1 or the name of an STL file"
@@ -37,20 +41,53 @@ def fixtures_of(texts: Sequence[str], cell_mm: float) -> list[Stock]:
     Raises:
         UsageError: no such file, no closed surface, or too many cells.
     """
+    return _made(
+        texts,
+        cell_mm,
+        lambda text: (
+            Stock(_box(text), cell_mm)
+            if text.startswith("box=")
+            else solid_stock(Path(text), cell_mm, lambda _: cell_mm)
+        ),
+        lambda fixture: fixture.heights.size,
+        MOST_CELLS,
+    )
+
+
+def solid_fixtures_of(texts: Sequence[str], cell_mm: float) -> list[Voxels]:
+    """Return the fixtures for tools that come from any side, in the coordinates of the part, which they turn with.
+
+    Raises:
+        UsageError: no such file, no closed surface, or too many cells.
+    """
+    return _made(
+        texts,
+        cell_mm,
+        lambda text: (
+            Voxels(_box(text), cell_mm)
+            if text.startswith("box=")
+            else solid_voxels(Path(text), cell_mm, lambda _: cell_mm)
+        ),
+        lambda fixture: fixture.cells.size,
+        MOST_VOXELS,
+    )
+
+
+def _made(
+    texts: Sequence[str], cell_mm: float, make: Callable[[str], T], size: Callable[[T], int], most: int
+) -> list[T]:
+    """Return what texts tell, as long as all of them together have not too many cells."""
     check_fixtures(texts)
-    found, cells = [], 0
+    found: list[T] = []
+    cells = 0
     for text in texts:
-        is_box = text.startswith("box=")
-        fixture = (
-            Stock(_box(text), cell_mm) if is_box else solid_stock(Path(text), cell_mm, lambda _: cell_mm)
-        )
-        cells += fixture.heights.size
-        if cells > MOST_CELLS:
+        found.append(make(text))
+        cells += size(found[-1])
+        if cells > most:
             raise UsageError(
-                f"the fixtures have more than {MOST_CELLS:,} cells of {cell_mm:g} mm",
+                f"the fixtures have more than {most:,} cells of {cell_mm:g} mm",
                 hint="Choose a coarser resolution.",
             )
-        found.append(fixture)
     return found
 
 

@@ -104,10 +104,8 @@ class Form:
         Raises:
             UsageError: a body that is not one of these.
         """
-        if self.fixtures or self.target is not None:
-            raise UsageError(
-                "fixtures and targets with turning axes or tools that undercut", hint="Leave them out."
-            )
+        if self.target is not None:
+            raise UsageError("a target with turning axes or tools that undercut", hint="Leave it out.")
         kind, _, numbers = self.text.partition("=")
         if kind == "box":
             x0, y0, z0, x1, y1, z1 = numbers_of(self.text, numbers, 6)

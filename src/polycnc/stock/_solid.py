@@ -50,6 +50,8 @@ def read_stl(path: Path) -> Mesh:
 
 def _content(path: Path) -> bytes:
     """Return what is in a file, whose size is looked at first: some hundred bytes are needed for a triangle."""
+    if "\0" in str(path):
+        raise UsageError("the name of a file with a zero byte in it", hint="Name an STL file.")
     try:
         if path.exists() and not path.is_file():
             raise UsageError(f"'{path}' is no file", hint="Name an STL file.")

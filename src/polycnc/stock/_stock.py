@@ -59,7 +59,8 @@ def check_cell(cell_mm: float) -> None:
 class Stock:
     """Hold what is left of a body above its bottom: one height for each cell of a grid.
 
-    `box` is what the field covers (mm), `cell_mm` the width of a cell. Undercuts cannot be told.
+    `box` is what the field covers (mm), `cell_mm` the width of a cell, at most that of the body.
+    Undercuts cannot be told.
 
     Raises:
         UsageError: a body without volume, or a grid that would need too much memory.
@@ -72,6 +73,7 @@ class Stock:
                 f"a {box} has no volume", hint="Give its lower corner first, then its upper one."
             )
         check_cell(cell_mm)
+        cell_mm = min(cell_mm, *sizes[:2])
         counts = [max(1, math.ceil(size / cell_mm - 1e-9)) for size in sizes[:2]]
         if counts[0] * counts[1] > MOST_CELLS:
             enough = math.sqrt(sizes[0] * sizes[1] / MOST_CELLS)

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import math
+from collections.abc import Iterator, Mapping, Sequence
 
 import numpy as np
 import numpy.typing as npt
@@ -28,18 +29,19 @@ _RIM_CELLS = 1.0
 class TurnedCutting:
     """Let tools cut a body of cells (see `tally`), each with the axis that its rows have.
 
-    Depths are how far up the tool the material is. A tool that is not among `tools` cuts nothing.
+    Depths are how far up the tool the material is. A tool that is not among `tools` cuts nothing. `fixtures` turn with
+    the body, and no part of a tool may touch them.
     """
 
-    def __init__(self, stock: Voxels, tools: Mapping[int, Tool]) -> None:
+    def __init__(self, stock: Voxels, tools: Mapping[int, Tool], fixtures: Sequence[Voxels] = ()) -> None:
         self.stock = stock
         self.tally = Tally()
         self._tools = tools
         self._ways = WaysOfRows(
             CHORD_SHARE * stock.cell_mm, {number: tool.radius_mm for number, tool in tools.items()}
         )
-        low, high = np.array(stock.box.low), np.array(stock.box.high)
-        self._reach_mm = float(np.linalg.norm(high - low))
+        self._fixtures = fixtures
+        self._reach_mm = _diagonal_mm(stock)
 
     def add(self, rows: Rows) -> None:
         """Take the next rows; the tool comes from where the last ones ended."""
@@ -54,23 +56,22 @@ class TurnedCutting:
         outline = tool.cutting_profile()
         rim = _RIM_CELLS * self.stock.cell_mm
         core = outline.within(max(outline.radius_mm - rim, 0.5 * outline.radius_mm)).rows
-        first_step = min((height for height, _ in (*tool.shank, *tool.holder)), default=self._reach_mm)
-        height, tops = min(first_step, self._reach_mm), tool.upper_profile().rows
-        if tool.undercuts:
-            height = min(height, tool.outline[-1][1])
+        height, tops = self._height_mm(tool, self.stock), tool.upper_profile().rows
+        for fixture in self._fixtures:
+            top = self._height_mm(tool, fixture) - rim
+            met = self._figures(ways, core, rim, top, cuts=False, tops=tops, body=fixture)
+            self._note(ContactKind.FIXTURE, ways, met, rim)
+            for kind, _, clear in self._held(tool):
+                met = self._figures(ways, clear, 0.0, _diagonal_mm(fixture), cuts=False, body=fixture)
+                self._note(kind, ways, met, 0.0)
         if ways.rapid:
             met = self._figures(ways, core, rim, height - rim, cuts=False, tops=tops)
             self._note(ContactKind.RAPID, ways, met, rim)
         cut = self._figures(ways, outline.rows, 0.0, height, cuts=True, tops=tops)
         self.tally.count(ways, cut, tool)
         self._note(ContactKind.FLUTES, ways, cut, tool.flute_mm)
-        for kind, steps in (
-            (ContactKind.SHANK, tool.neck_profile()),
-            (ContactKind.HOLDER, tool.holder_profile()),
-        ):
-            if len(steps.rows):
-                clear = steps.within(max(steps.radius_mm - rim, 0.5 * steps.radius_mm)).rows
-                self._note(kind, ways, self._figures(ways, clear, 0.0, self._reach_mm, cuts=False), 0.0)
+        for _, kind, clear in self._held(tool):
+            self._note(kind, ways, self._figures(ways, clear, 0.0, self._reach_mm, cuts=False), 0.0)
         if not ways.rapid:
             turns = ways.rows.turns[ways.ends]
             for kind, wrong in (
@@ -81,6 +82,27 @@ class TurnedCutting:
             self.tally.count_idle(
                 ways, cut, lambda first, last: self._is_near(ways, outline.rows, tops, height, first, last)
             )
+
+    def _held(self, tool: Tool) -> Iterator[tuple[ContactKind, ContactKind, Floats]]:
+        """Yield what is wrong where shank and holder touch a fixture, and the body, and their outlines without rims."""
+        rim = _RIM_CELLS * self.stock.cell_mm
+        for in_fixture, in_stock, steps in (
+            (ContactKind.FIXTURE_SHANK, ContactKind.SHANK, tool.neck_profile()),
+            (ContactKind.FIXTURE_HOLDER, ContactKind.HOLDER, tool.holder_profile()),
+        ):
+            if len(steps.rows):
+                yield (
+                    in_fixture,
+                    in_stock,
+                    steps.within(max(steps.radius_mm - rim, 0.5 * steps.radius_mm)).rows,
+                )
+
+    @staticmethod
+    def _height_mm(tool: Tool, body: Voxels) -> float:
+        """Return how high a tool is up to its shank or holder, as far as it can be in a body."""
+        steps = [height for height, _ in (*tool.shank, *tool.holder)]
+        top = [tool.outline[-1][1]] if tool.undercuts else []
+        return min(*steps, *top, _diagonal_mm(body), math.inf)
 
     def _is_near(
         self, ways: Ways, outline: Floats, tops: Floats, height_mm: float, first: int, last: int
@@ -100,9 +122,10 @@ class TurnedCutting:
         *,
         cuts: bool,
         tops: Floats = _NOTHING,
+        body: Voxels | None = None,
     ) -> Floats:
         places = ways.places[:, :3]
-        return self._swept(places, ways.axes, outline, from_mm, height_mm, cuts=cuts, tops=tops)
+        return self._swept(places, ways.axes, outline, from_mm, height_mm, cuts=cuts, tops=tops, body=body)
 
     def _swept(
         self,
@@ -114,8 +137,9 @@ class TurnedCutting:
         *,
         cuts: bool,
         tops: Floats,
+        body: Voxels | None = None,
     ) -> Floats:
-        found, stock = np.zeros((len(places) - 1, VOXEL_FIGURES)), self.stock
+        found, stock = np.zeros((len(places) - 1, VOXEL_FIGURES)), body or self.stock
         sweep_voxels(
             stock.cells,
             stock.first,
@@ -137,3 +161,7 @@ class TurnedCutting:
             place = float(found[AT_X]), float(found[AT_Y]), float(found[AT_Z])
             t_s, block = float(ways.rows.t_s[row]), int(ways.rows.block[row])
             self.tally.contacts.note(Contact(kind, block, t_s, place, float(found[DEPTH_MM])))
+
+
+def _diagonal_mm(body: Voxels) -> float:
+    return float(np.linalg.norm(np.subtract(body.box.high, body.box.low)))

@@ -23,6 +23,7 @@ from polycnc.stock import (
     Stock,
     Tool,
     ToolKind,
+    read_stl,
     stock_of_remarks,
     tool_number,
     tool_of_remark,
@@ -174,6 +175,20 @@ def test_a_body_inside_out_is_refused(tmp_path: Path) -> None:
     type(surface)(surface.vertices * (1.0, 1.0, 0.0), surface.faces).write_stl(file)
     with pytest.raises(UsageError, match="no volume"):
         Form(str(file)).body(circle(), TOOLS)
+
+
+def test_a_cell_is_not_wider_than_its_body() -> None:
+    """What is left and removed was that of the cell."""
+    stock = Stock(Box((0.0, 0.0, -10.0), (20.0, 30.0, 0.0)), 5_000.0)
+    assert stock.cell_mm == 20.0
+    assert Stock(Box((0.0, 0.0, -10.0), (20.0, 40.0, 0.0)), 70.0).volume_mm3 == pytest.approx(
+        20.0 * 40.0 * 10.0
+    )
+
+
+def test_a_file_with_a_zero_byte_in_its_name_is_refused() -> None:
+    with pytest.raises(UsageError, match="zero byte"):
+        read_stl(Path("part\0.stl"))
 
 
 UNLIKE = ("probe", "thread mill", "T-slot mill", "dovetail mill", "lollipop mill", "radius mill", "form mill")

@@ -309,3 +309,10 @@ def test_rapids_into_what_pecks_have_cut_leave_an_auto_body_whole() -> None:
 def test_a_machine_that_starts_within_the_stock(start: str, kinds: list[ContactKind]) -> None:
     text = f"(T1 D=6 flat end mill)\nT1 M6\nS900 M3\n{start}\nG0 Z9\nG1 Z-2 F500\nX30\nG0 Z20\nM30\n"
     assert [each.kind for each in machined(text, form="box=-5,-5,-12,60,42,4").collisions] == kinds
+
+
+def test_a_thread_mill_is_not_taken_for_a_tool_of_a_lathe() -> None:
+    text = "(Thread M20, cut by a thread mill of 10 mm)\nT5 M6\nS900 M3\nG0 Z5\nG1 Z-3 F500\nM30\n"
+    machined = runner.run(text, None, "fanuc", stock="box=-9,-9,-9,9,9,0").machined
+    assert machined is not None
+    assert any("the shape of tool 5 is not known" in each for each in machined.messages)

@@ -22,7 +22,9 @@ from polycnc.stock import (
     ToolKind,
     TurnedCutting,
     Voxels,
+    _fixtures,
     check_closed,
+    solid_fixtures_of,
 )
 from polycnc.stock._auto import leave_out_rapids
 
@@ -221,8 +223,8 @@ def test_the_surface_of_cells_is_closed_and_has_their_volume() -> None:
         (lambda: Form("missing.stl").voxels(NOWHERE, {}), "cannot read"),
         (lambda: Form("auto").voxels(NOWHERE, {}), "cuts nothing"),
         (
-            lambda: Form("box=0,0,0,1,1,1", fixtures=("box=0,0,0,1,1,1",)).voxels(NOWHERE, {}),
-            "fixtures and targets",
+            lambda: Form("box=0,0,0,1,1,1", target="part.stl").voxels(NOWHERE, {}),
+            "a target with turning axes",
         ),
     ],
 )
@@ -246,3 +248,23 @@ def test_what_rapids_leave_of_an_auto_body_is_found_where_they_are(monkeypatch: 
     leave_out_rapids(everywhere, course, {4: MILL})
     assert 100.0 < body.volume_mm3 - near.volume_mm3 < 0.5 * body.volume_mm3
     assert np.array_equal(near.cells, everywhere.cells)
+
+
+def test_a_leaning_tool_in_a_fixture(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The tool leans towards +X: what stands there meets its shank, what stands on its way the cutter."""
+    tool = Tool(ToolKind.FLAT, 6.0, flute_mm=12.0, holder=((14.0, 9.0),))
+    axis = tilted(40.0)
+    course = record([(0.0, -12.0, 1.0), (0.0, 0.0, 1.0), (0.0, 12.0, 1.0)], [axis] * 3, [False] * 3)
+    beside = {
+        "box=-9,-20,-9,9,20,0": [],
+        "box=-2,9,0,2,16,9": ["tool in fixture"],
+        "box=16,-2,9,26,8,30": ["holder in fixture"],
+    }
+    for text, kinds in beside.items():
+        cutting = TurnedCutting(Voxels(BOX, 0.5), {4: tool}, solid_fixtures_of((text,), 0.5))
+        cutting.add(course)
+        found = [str(each.kind) for each in cutting.tally.contacts.all() if "fixture" in each.kind]
+        assert sorted(set(found)) == kinds, text
+    monkeypatch.setattr(_fixtures, "MOST_VOXELS", 1999)
+    with pytest.raises(UsageError, match="the fixtures have more than 1,999 cells"):
+        solid_fixtures_of(("box=0,0,0,5,5,5", "box=0,0,0,5,5,5"), 0.5)
