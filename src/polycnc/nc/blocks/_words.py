@@ -120,6 +120,11 @@ class BlockWords:
         g = self.g.get(group)
         return None if g is None else g.word
 
+    @property
+    def has_codes(self) -> bool:
+        """Whether there are G or M words, such as do nothing among them."""
+        return bool(self.g or self.m or self.ignored or self.left_out)
+
     def unused(self) -> Iterator[tuple[str, Word]]:
         """Yield address and word of all that nothing has taken."""
         for letter, word in self.by_letter.items():
@@ -273,6 +278,12 @@ def _add_value(word: Word, words: BlockWords, fail: Fail, *, two_tools: bool) ->
     if letter in words.by_letter:
         raise fail(
             f"'{letter.removesuffix(',')}' is given twice in this block", "Write each address once.", word
+        )
+    if letter == "O" and (words.by_letter.keys() - {"N"} or words.has_codes):
+        raise fail(
+            "the letter O stands behind other words",
+            "A program number begins its block. In a number, write the digit 0.",
+            word,
         )
     words.by_letter[letter] = word
 
