@@ -15,7 +15,8 @@ class Refusals:
 
     def __init__(self, text: ProgramText, found: list[Refusal]) -> None:
         self._text = text
-        self._left = dict(enumerate(found))
+        self._found = found
+        self._left = set(range(len(found)))
 
     def refuse(self, index: int) -> NoReturn:
         """Refuse a statement.
@@ -23,10 +24,11 @@ class Refusals:
         Raises:
             MacroError: Always.
         """
-        refusal = self._left.pop(index)
+        self._left.discard(index)
+        refusal = self._found[index]
         raise MacroError(refusal.what, refusal.hint, refusal.code)
 
     def remark(self, messages: Messages) -> None:
         """Add a message on each statement that has not been executed."""
-        for refusal in self._left.values():
+        for refusal in (self._found[index] for index in sorted(self._left)):
             messages.note(f"{refusal.what}{NOT_EXECUTED}", self._text.position(refusal.at).line)
