@@ -8,6 +8,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from polycnc.controllers.imc import imclib
 from polycnc.controllers.imc.card._card import Card
 from polycnc.controllers.imc.core._event_codes import EventCommand, EventType, constant_words
 from polycnc.controllers.imc.core._events import scale
@@ -25,6 +26,7 @@ from support.imc_card import (
     set_now,
     shows,
 )
+from support.imc_network import opened
 from support.often import share
 
 A16, B16, R16 = (address(f"user16b{k}") for k in (1, 2, 0))
@@ -123,8 +125,10 @@ OF_AN_AXIS = {16: address("trackwin"), 32: address("breakp"), 48: address("gearr
 
 @pytest.mark.covers(*(f"imc.event.{command.name}" for command in EventCommand), "imc.struct.EventInfo")
 @pytest.mark.covers("imc.struct.EventInfo.Src2.param", "imc.enum.IMC_EVENT_CMD", "imc.IMC_InstallEvent")
-def test_operands_and_result_are_those_of_their_axes() -> None:
+@pytest.mark.parametrize("by_library", [False, True])
+def test_operands_and_result_are_those_of_their_axes(by_library: bool) -> None:
     card = ready_card(number_of_axes=4)
+    handle = opened(card)
     for name, immediate in _names():
         first, second, result, compute = ARITHMETIC[name.replace("i", "")]
         values = {
@@ -144,12 +148,20 @@ def test_operands_and_result_are_those_of_their_axes() -> None:
             operands["constant"] = values[second][1]
         else:
             operands |= {"second": OF_AN_AXIS[second], "second_axis": 1}
-        install(card, event(name, "Allways", **operands))
+        if by_library:
+            second_operand = operands.get("constant", (OF_AN_AXIS[second], 1))
+            command = EventCommand[f"CMD_{name}"]
+            source, target = (OF_AN_AXIS[first], 2), (OF_AN_AXIS[result], 3)
+            info = imclib.EventInfo.of(command, src1=source, src2=second_operand, dest=target)
+            assert imclib.IMC_InstallEvent(handle, [info], 1, imclib.SEL_IFIFO) == imclib.IMC_OK
+        else:
+            install(card, event(name, "Allways", **operands))
         card.advance(1)
         values[result][3] = _signed(compute(values[first][2], values[second][1]), result)
         for bits, at in OF_AN_AXIS.items():
             assert [card.read_raw(at, axis, bits // 16) for axis in range(4)] == values[bits], name
         set_now(card, ("events", 0))
+    imclib.detach()
 
 
 @pytest.mark.covers(

@@ -296,6 +296,11 @@ def test_segments(card: ToldCard, handle: lib.IMC_HANDLE) -> None:
             (speed, end_speed, *ends, last, *center, 1),
             Segment((*ends, last), center, True, speed, end_speed),
         ),
+        (
+            "IMC_AddSpiralWithVel",
+            (end_speed, speed, *ends, last, *center, 1),
+            Segment((*ends, last), center, True, end_speed, speed),
+        ),
     ]
     for name, arguments, segment in calls:
         card.told.clear()

@@ -274,12 +274,12 @@ def test_a_superimposed_move_adds_to_whatever_the_axis_does() -> None:
 
 @pytest.mark.covers("imc.IMC_MoveSuperimposed")
 @shows("mcstgpos")
-@pytest.mark.covers("imc.param.shiftmaster")
+@pytest.mark.covers("imc.param.shiftmaster", "imc.param.pcsdist")
 def test_shiftmaster_decides_whether_the_target_takes_part_in_a_superimposed_move() -> None:
-    for shift, target in ((0, 600), (FLAG, 100)):
+    for shift, distance, target in ((0, 500, 600), (0, -700, -600), (FLAG, 500, 100), (1, -700, 100)):
         card = ready_card()
         set_now(card, ("shiftmaster", shift), ("mcstgpos", 100))
-        move_relative(card, 500, system="pcs")
+        move_relative(card, distance, system="pcs")
         card.wait()
         assert card.read("mcstgpos") == target
 
@@ -566,13 +566,19 @@ def test_the_main_encoder_is_scaled_and_shows_its_speed() -> None:
         assert (card.read("encp"), card.read("encpvel")) == (140 + 25 * k // 2, 12.5)
 
 
-@shows("encp")
+@shows("encp encpvel")
 @pytest.mark.covers("imc.param.ena", "imc.param.encpctr")
 @pytest.mark.covers("imc.param.poserr")
 def test_feedback_can_follow_the_command() -> None:
     card = ready_card()
-    set_now(card, ("encpctr", -0x8000), ("ena", 0))
+    set_now(card, ("encpctr", -0x8000), ("ena", 0), ("smooth", 5), ("pcstgvel", 3), ("mcsmaxvel", 8))
     move_absolute(card, 100)
+    card.advance(7)
+    assert 0 != card.read("encpvel") == card.read("curvel") != card.read("mcsvel")
+    assert 0 < card.read("encp") == card.read("curpos") < card.read("mcspos") + card.read("pcspos")
+    set_now(card, ("pcstgvel", 0), ("pcstgpos", 0))
+    card.wait()
+    set_now(card, ("mcstgpos", 100 - int(card.read("pcspos"))), ("mcsgo", FLAG))
     card.wait()
     assert (card.read("encp"), card.read("poserr"), card.kernel.servo.actual[0]) == (100, 0, 0)
 

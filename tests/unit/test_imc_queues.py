@@ -172,8 +172,8 @@ def test_a_wait_for_the_end_of_a_move_behind_that_move_is_not_met_too_early() ->
 @pytest.mark.covers("imc.fifo.SEL_PFIFO1", "imc.fifo.SEL_PFIFO2")
 @shows("user16b0")
 @pytest.mark.covers("imc.concept.pfifo1", "imc.concept.pfifo2", "imc.param.pfifoenable")
-@pytest.mark.parametrize("space", [1, 2])
-def test_a_path_queue_is_off_until_it_is_enabled(space: int) -> None:
+@pytest.mark.parametrize(("space", "on"), [(1, FLAG), (2, FLAG), (1, 1), (2, 0x4000)])
+def test_a_path_queue_is_off_until_it_is_enabled(space: int, on: int) -> None:
     card = ready_card()
     queue = PFIFO1 + space - 1
     send(card, queue, ("user16b0", 1))
@@ -184,7 +184,7 @@ def test_a_path_queue_is_off_until_it_is_enabled(space: int) -> None:
     send(card, IFIFO, (f"startpath{3 - space}", FLAG))  # the other space is another queue
     card.advance(3)
     assert (_cells(card)[0], card.waiting_words(queue)) == (0, 12)
-    send(card, IFIFO, (f"startpath{3 - space}", 0), (f"startpath{space}", FLAG))
+    send(card, IFIFO, (f"startpath{3 - space}", 0), (f"startpath{space}", on))
     card.advance(1)  # and carries out in a cycle whatever does not take time
     assert (_cells(card)[:3], card.waiting_words(queue)) == ([1, 5, 10], 0)
 

@@ -118,17 +118,26 @@ def test_without_an_entry_a_code_is_its_key() -> None:
     assert _rapid(text) == ["G00M05X1.50\n"]
 
 
+@pytest.mark.covers("post.sec.parameter", "post.block.sequence_number", "post.order.sort")
+def test_numbers_begin_with_10_and_step_by_10_if_nothing_else_is_said() -> None:
+    text = SMALL.replace('name = "test"', "sequence_place = 1").replace("$X$", "\n$X$")
+    assert _rapid(text) == ["N10G0\n", "N20X1.50\n"]
+    text = text.replace("!-G00!", "<OUTPUTORDER=1>'b,-99'!-G00!'a,-101'")
+    assert _rapid(text) == ["aN10bG0\n", "N20X1.50\n"]
+
+
 @pytest.mark.covers("post.file.output_control_file")
 @pytest.mark.parametrize("encoding", ["utf-8", "utf-8-sig", "cp932"])
 @pytest.mark.parametrize("line_end", ["\n", "\r\n"])
 def test_files_in_utf_8_and_shift_jis(tmp_path: Path, encoding: str, line_end: str) -> None:
     path = tmp_path / "制御.toml"
-    path.write_bytes(JAPANESE.replace("\n", line_end).encode(encoding))
+    text = JAPANESE.replace("# 出力", "# ①髙 出力").replace("(工具 ", "(①髙 工具 ")  # in cp932 alone
+    path.write_bytes(text.replace("\n", line_end).encode(encoding))
     control = load_control(path)
     assert control.parameters.name == "工具交換"
     written: list[str] = []
     control.start(written.append).call("RAPID", {"COMMENT": "ソ表"})  # their second byte is a backslash
-    assert written[0] == "(工具 ソ表)\n"
+    assert written[0] == "(①髙 工具 ソ表)\n"
     path.write_bytes(JAPANESE.replace("$X$", "$X").replace("\n", line_end).encode(encoding))
     with pytest.raises(ConfigurationError) as error:
         load_control(path)

@@ -88,6 +88,31 @@ FUNCTIONS = [
     ("ADMS(-1.13)", -1.2166666666667),
     ("ADMS(-12.3)", -12.5),
     ("ADMS(400.0036)", 400.01),
+    # At the ends of what they take, and far out.
+    ("SIN(0)", 0.0),
+    ("COS(0)", 1.0),
+    ("ASIN(1)", math.pi / 2),
+    ("ASIN(-1)", -math.pi / 2),
+    ("ACOS(1)", 0.0),
+    ("ACOS(-1)", math.pi),
+    ("ACOS(0)", math.pi / 2),
+    ("ATAN(1000)", 1.569796327128),
+    ("ATAN(-250)", -1.566796348128),
+    ("DEG(0.00001)", 0.000572957795),
+    ("RAD(0.01)", 0.000174532925),
+    ("SQRT(0)", 0.0),
+    ("SQRT(0.00000625)", 0.0025),
+    ("EXP(0)", 1.0),
+    ("EXP(-15)", 0.000000305902),
+    ("LOG10(1.0)", 0.0),
+    ("LOG10(0.00001)", -5.0),
+    ("LOG(1)", 0.0),
+    ("LOG(0.0001)", -9.210340371976),
+    ("LOG(1000000)", 13.815510557964),
+    ("DABS(0)", 0.0),
+    ("DABS(-123456.75)", 123456.75),
+    ("DMS(-400.01)", -400.0036),
+    ("ADMS(-400.0036)", -400.01),
 ]
 
 
@@ -272,7 +297,9 @@ def test_text_without_an_order_has_order_0() -> None:
     assert blocks_of("<OUTPUTORDER=1>'B,0'a\"b\"'C,-1''D,1'") == ["CBabD"]
 
 
-@pytest.mark.covers("post.expr.string_value", "post.word.STARTOFLINE", "post.word.ENDOFLINE")
+@pytest.mark.covers(
+    "post.expr.string_value", "post.word.STARTOFLINE", "post.word.ENDOFLINE", "post.op.assign"
+)
 def test_texts_around_lines_keep_their_blanks_and_marks_until_others_come() -> None:
     macro = '<STARTOFLINE=" /!$@&< ">A\n<ENDOFLINE=" {;}  ">B\n<STARTOFLINE="">C'
     assert blocks_of(macro) == [" /!$@&< A", " /!$@&< B {;}  ", "C {;}  "]
@@ -292,7 +319,9 @@ def test_text_keeps_every_character() -> None:
 
 
 @pytest.mark.covers("post.code.combined")
-@pytest.mark.parametrize("code", ["!*-G91!", "!-*G91!", "!--G91!", "!!", "! G91!", "!-!"])
+@pytest.mark.parametrize(
+    "code", ["!*-G91!", "!-*G91!", "!--G91!", "!!", "! G91!", "!-!", "!+G91!", "!- G91!"]
+)
 def test_a_code_has_one_prefix(code: str) -> None:
     error = _error(f"ABC{code}")
     assert "is not the search key of a code" in error.what

@@ -17,6 +17,7 @@ Case = tuple[str | tuple[str, ...], str, dict[str, Any]]
 
 NUMBERED: dict[str, Any] = {"sequence_place": 1}
 MARKED: dict[str, Any] = {"sequence_place": 2}
+ORDERED, ENDED = '<OUTPUTORDER=1><STARTOFLINE="s">', '<ENDOFLINE="e">'
 
 
 def _six(operator: str, others: str, one: str, at: int) -> str:
@@ -37,6 +38,7 @@ ROWS: dict[str, list[Case]] = {
         ('a"b!c"d" e "', "ab!cd e ", {}),
         ('<OUTPUTORDER=1>!G00!"b"\'a,-1\'"c"', "abcG00", {}),
         ('"x,-200"!G00!"\'y,5\'"', "x,-200G00'y,5'", {}),
+        ('"{a}"\'{b},0\'"{}%d"', "{a}{b}{}%d", {}),
     ],
     "string.squote": [
         ("<OUTPUTORDER=1>!G00!'b,9''c,11''a,-200'", "abG00c", {}),
@@ -96,6 +98,7 @@ ROWS: dict[str, list[Case]] = {
          "PATHNUMBER": 12.0}),
         ("$toolchange$$Comment$", "T3=", {"TOOLCHANGE": "T3", "COMMENT": "="}),
         ("$COMMENT$$COMMENT$", "abab", {"COMMENT": "ab"}),
+        ("$DWELL$a$DWELL$", "0a0", {"DWELL": -0.0000004}),
     ],
     "word.reserved": [
         ("($PARTNAME$/$MACHINENAME$/$UNITS$)$TOOLNAME$", "(P 1/M/21)c", {"PARTNAME": "P 1", "MACHINENAME": "M",
@@ -106,6 +109,7 @@ ROWS: dict[str, list[Case]] = {
     "word.function_var": [
         ("<T=10>$T$\n<S=1234.6>$S$\n<F=0.125>$F$\n<X=-2>$X$", "T10|S1235|F0.125|X-2.000", {}),
         ("<t=5>a$t$b", "aT05b", {}),
+        ("$X$\n<X=X-0.0001>$X$a\n<X=X-1>$X$", "X-2.500|a|X-3.500", {"X": -2.5}),
     ],
     "word.T": [
         ("<T=3>$T$\n<T=T+97>$T$", "T03|T100", {}),
@@ -136,6 +140,8 @@ ROWS: dict[str, list[Case]] = {
         ("a\n@1@b\nc@1@\n@0@d\n@1@!G00!", "a|N10b|N20c|d|N30G00", MARKED),
         ("a\n@1@b", "N10a|N20b", NUMBERED),
         ("a\n@1@b", "a|b", {"sequence_place": 0}),
+        ("@1@ a\n@1@b@1@", "N10 a|N20b", MARKED),
+        ("@1@a@1@\n@1@b", "N10a|N20b", NUMBERED),
     ],
     "seq.option2": [
         ("a\n@1@b\n!G00!$X$\nIF(X==1)\n@1@c\nd\nENDIF", "a|N10b|G00X1.000|N20c|d", {**MARKED, "X": 1.0}),
@@ -169,6 +175,7 @@ ROWS: dict[str, list[Case]] = {
     "op.assign": [
         ("<V1=3><V2=V1><V1=8><T=V1*10+V2>$T$", "T83", {}),
         ("< V1 = 4 >< T=V1 +1 >$T$", "T05", {}),
+        ('<STARTOFLINE=" s "><ENDOFLINE=" e ">a', " s a e ", {}),
     ],
     "expr.newvar": [
         (("<AB_1=6.5>", "<AB_2=AB_1*2>", "<T=AB_2+AB_1*4>$T$"), "T39", {}),
@@ -227,6 +234,7 @@ ROWS: dict[str, list[Case]] = {
         ("$X$$F$\n&X*7.25&&F*8&$X$$F$\n&X*-X*2&$X$", "X1.000F2|X7.250F8|X-14.500", {"X": 1.0, "F": 2.0}),
         ("$Z$\n&Z*Z&$Z$\n&Z*9-5&$Z$\n$Z$a", "Z3.000|Z3.000|Z4.000|a", {"Z": 3.0}),
         ("<V1=6>&s*V1/4+0.5&$S$\n<T=S>$T$", "S2|T02", {}),
+        ("&X*7 &&F* -V1-2 &$X$$F$", "X7.000F-2", {}),
     ],
     "if.statement": [
         ("IF(X==1)\na\nb\nELSE IF(X==1)\nc\nELSE\nd\nENDIF\ne", "a|b|e", {"X": 1.0}),
@@ -239,15 +247,18 @@ ROWS: dict[str, list[Case]] = {
         ("IF(X==2)\na\nELSE IF(X==3 || X==1)\nb\n<X=7>\nELSE IF(X==7)\nc\nELSE\nd\nENDIF", "b", {"X": 1.0}),
         ("IF(X==2)\na\nELSE IF(X==3)\nb\nENDIF\ne", "e", {"X": 1.0}),
         ("IF(X==0)\n" + "ELSE IF(X==5)\na\n" * 14 + "ELSE IF(X==1)\nb\nENDIF", "b", {"X": 1.0}),
+        ("IF(X==2)\na\nelse \t IF(X==3)\nb\n\tELSEIF (X==1)\nc\nENDIF", "c", {"X": 1.0}),
     ],
     "if.else": [
         ("IF(X==2)\na\nELSE\nb\nc\nENDIF\nd", "b|c|d", {"X": 1.0}),
         ("IF(X==1)\na\nELSE\nb\nENDIF", "a", {"X": 1.0}),
         ("IF(X==2)\na\nELSE IF(X==1)\nb\nELSE\nc\nENDIF", "b", {"X": 1.0}),
+        ("if(X==2)\na\nElse If(X==3)\nb\nelse\nc\nEndif\nd", "c|d", {"X": 1.0}),
     ],
     "if.endif": [
         ("IF(X==2)\na\nENDIF\nb\nIF(X==1)\nc\nENDIF\nd", "b|c|d", {"X": 1.0}),
         ("IF(X==1)\nIF(X==2)\na\nENDIF\nb\nENDIF\nc", "b|c", {"X": 1.0}),
+        ("IF(X==2)\na\nEndIf\nIF(X==1)\nb\nendif \t\nc", "b|c", {"X": 1.0}),
     ],
     "if.nesting": [
         ("IF(X==1)\n" * 10 + "a\n" + "ENDIF\n" * 10 + "b", "a|b", {"X": 1.0}),
@@ -289,8 +300,13 @@ ROWS: dict[str, list[Case]] = {
     "macro.elements": [
         ("a'b,-9'!G00!$X$@0@<V1=1>&F&\n@1@$F$\nIF(V1==1)\nc\nENDIF", "abG00X1.500|N10F2|N20c",
          {**NUMBERED, "X": 1.5, "F": 2.0}),
+        *((f"IF(X==1)\na\nELSE IF(X==2)\n{ORDERED}\nELSE\n{ENDED}\nENDIF\n!M03!!G00!", blocks, {"X": x})
+          for x, blocks in ((1.0, "a|M03G00"), (2.0, "sG00M03"), (3.0, "M03G00e"))),
     ],
-    "section.nc_macro": [(("a", "!G00!\nb", "$X$", "c\nd"), "a|G00|b|X3.000|c|d", {"X": 3.0})],
+    "section.nc_macro": [
+        (("a", "!G00!\nb", "$X$", "c\nd"), "a|G00|b|X3.000|c|d", {"X": 3.0}),
+        (("#1=5\n;x\n//y", "%\n[a]", "=z\n-"), "#1=5|;x|//y|%|[a]|=z|-", {}),
+    ],
     "concept.multi_path": [
         (("!-G01!$X$$F$", "@0@!M06!", "!-G01!$X$$F$"), "G01X1.000F9|M06", {"X": 1.0, "F": 9.0}),
         (("!-G01!$X$$F$", "&F&!M06!", "!-G01!$X$$F$"), "G01X1.000F9|M06|F9", {"X": 1.0, "F": 9.0}),
@@ -487,15 +503,16 @@ def test_a_posted_tool_change_has_the_number_in_the_format_of_its_word() -> None
         ]  # fmt: skip
 
 
-@pytest.mark.covers("post.macro.tool_change", "post.word.TOOLCHANGE")
+@pytest.mark.covers("post.macro.tool_change", "post.word.TOOLCHANGE", "post.word.T")
 def test_each_tool_of_a_path_is_changed_by_the_macro() -> None:
-    tools = (1, 2, 30, 4, 1)
+    tools = (1, 2, 30, 104, 1)
     path = "FEDRAT/300\n" + "".join(f"LOADTL/{tool}\nGOTO/{at},0,0\n" for at, tool in enumerate(tools))
     blocks, _ = posted(path, control(macros={"TOOL_CHANGE": "!M06!$TOOLCHANGE$"}))
     assert [each for each in blocks if "M06" in each] == [f"M06T{tool}" for tool in tools]
 
 
 @pytest.mark.covers("post.seq.suppress", "post.seq.output", "post.seq.option2", "post.block.sequence_number")
+@pytest.mark.covers("post.concept.multi_path", "post.sec.parameter")
 def test_a_posted_program_is_numbered_where_its_macros_say_so() -> None:
     macros = {**WORDS, "TOOL_CHANGE": "@1@!M06!$TOOLCHANGE$", "LINEAR": "@0@!-G01!$X$$Y$$Z$"}
     for place, numbered in ((0, {}), (2, {"M06T3": 10, "M06T12": 20})):
@@ -546,3 +563,42 @@ LINEAR = '''
     run = parse_control(text).start(written.append)
     run.call("LINEAR", {"X": 1.25})
     assert written == ["L04 G7 M88 S44 A2.5\n", "x Stay L07 S44\n", "L10 y G7\n"]
+
+
+@pytest.mark.covers("post.sec.nc_code", "post.sec.g_code", "post.sec.m_code", "post.code.modal_state")
+def test_a_code_without_text_has_its_mode_and_groups_are_told_apart_by_their_whole_names() -> None:
+    text = """
+[nc_code]
+SET = { code = "" }
+[g_code]
+SET = { group = "motion_1" }
+MOVE = { group = "motion_2" }
+[m_code]
+M1 = { group = "motion_1" }
+M2 = { group = "motion_2" }
+[nc_macros]
+LINEAR = "!-SET!!-MOVE!a\\n!-SET!!-MOVE!b\\n!-M1!!-SET!!-MOVE!c\\n!-M2!!-M1!!SET!"
+"""
+    written: list[str] = []
+    parse_control(text).start(written.append).call("LINEAR")
+    assert written == ["MOVEa\n", "b\n", "M1c\n", "M2\n"]
+
+
+@pytest.mark.covers(
+    "post.init.xyz", "post.concept.machining_origin", "post.sec.function_var", "post.sec.parameter"
+)
+def test_an_axis_begins_with_its_first_value_and_goes_to_the_origin() -> None:
+    tables = TABLES.replace('X%.3f"', 'X%.3f", initial = 8.0').replace('Y%.3f"', 'Y%.3f", modal = false')
+    tables = tables.replace("X = 0.0, Y = 0.0", "X = -5.0, Y = 2.5")
+    blocks = blocks_of("$X$$Y$$Z$\n<Y=7>$Y$\n&X&&Y&$X$$Y$\n$X$$Y$", tables=tables)
+    assert blocks == ["X8.000Y2.500Z100.000", "Y7.000", "X-5.000Y2.500", "Y2.500"]
+
+
+@pytest.mark.covers("post.word.F", "post.word.function_var")
+@pytest.mark.parametrize(
+    ("units", "minute", "turn"), [("mm", "250.000", "0.500"), ("inch", "9.843", "0.020")]
+)
+def test_a_feed_has_the_units_of_the_program(units: str, minute: str, turn: str) -> None:
+    used = control({"units": units}, {"LINEAR": "$F$/$FEEDMODE$"})
+    blocks, _ = posted("FEDRAT/250,MMPM\nGOTO/1,0,0\nSPINDL/RPM,500,CLW\nFEDRAT/0.5,MMPR\nGOTO/2,0,0\n", used)
+    assert [block for block in blocks if block[0] == "F"] == [f"F{minute}/94", f"F{turn}/95"]
