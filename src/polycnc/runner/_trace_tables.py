@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from importlib import import_module
-from typing import TYPE_CHECKING, Any
+from typing import Any, Protocol
 
 import numpy as np
 import numpy.typing as npt
@@ -12,13 +12,36 @@ from polycnc.errors import UsageError
 from polycnc.runner._power import POWER
 from polycnc.runner._trace_formats import COLUMN_NAMES, PROGRAM
 
-if TYPE_CHECKING:
-    from polycnc.runner._outcome import Trace
-
 RAPID = "rapid"
+Array = npt.NDArray[Any]
 
 
-def _numbers(trace: Trace) -> dict[str, npt.NDArray[Any]]:
+class Recorded(Protocol):
+    """What of a trace its tables are made of; see `Trace`."""
+
+    @property
+    def axes(self) -> tuple[str, ...]: ...
+    @property
+    def units(self) -> tuple[str, ...]: ...
+    @property
+    def t_s(self) -> Array: ...
+    @property
+    def block(self) -> Array: ...
+    @property
+    def feed_mm_s(self) -> Array: ...
+    @property
+    def rapid(self) -> Array: ...
+    @property
+    def setpoint(self) -> Array: ...
+    @property
+    def actual(self) -> Array | None: ...
+    @property
+    def program(self) -> Array | None: ...
+    @property
+    def power(self) -> Array | None: ...
+
+
+def _numbers(trace: Recorded) -> dict[str, npt.NDArray[Any]]:
     found = dict(zip(COLUMN_NAMES, (trace.t_s, trace.block, trace.feed_mm_s), strict=True))
     parts = [("", trace.setpoint)] + ([] if trace.actual is None else [("_actual", trace.actual)])
     for word, positions in parts:
@@ -27,13 +50,13 @@ def _numbers(trace: Trace) -> dict[str, npt.NDArray[Any]]:
     return found if trace.power is None else found | {POWER: trace.power}
 
 
-def columns_of(trace: Trace) -> dict[str, npt.NDArray[Any]]:
+def columns_of(trace: Recorded) -> dict[str, npt.NDArray[Any]]:
     """Return the columns of a trace file by name, and `rapid` before `program`."""
     found = _numbers(trace) | {RAPID: trace.rapid}
     return found if trace.program is None else found | {PROGRAM: trace.program}
 
 
-def array_of(trace: Trace, dtype: npt.DTypeLike | None, copy: bool | None) -> npt.NDArray[Any]:
+def array_of(trace: Recorded, dtype: npt.DTypeLike | None, copy: bool | None) -> npt.NDArray[Any]:
     """Return the columns that are numbers, side by side.
 
     Raises:
@@ -44,12 +67,12 @@ def array_of(trace: Trace, dtype: npt.DTypeLike | None, copy: bool | None) -> np
     return np.column_stack(list(_numbers(trace).values())).astype(dtype or np.float64, copy=False)
 
 
-def arrow_of(trace: Trace) -> Any:
+def arrow_of(trace: Recorded) -> Any:
     """Return the columns as a table of pyarrow."""
     return _library("pyarrow", "polycnc[parquet]").table(columns_of(trace))
 
 
-def pandas_of(trace: Trace) -> Any:
+def pandas_of(trace: Recorded) -> Any:
     """Return the columns as a data frame of pandas."""
     return _library("pandas", "pandas").DataFrame(columns_of(trace))
 

@@ -8,21 +8,13 @@ from pathlib import Path
 from typing import Protocol
 
 from polycnc.servers.machines._log import Log
-from polycnc.servers.machines._machine import ServedMachine
+from polycnc.servers.machines._machine import OpenDoor, ServedMachine
 
 LOOPBACK = "127.0.0.1"
 
 
-class Door(Protocol):
+class Door(OpenDoor, Protocol):
     """Answer clients of a protocol, in the running event loop, from `start` to `close`."""
-
-    @property
-    def said(self) -> str:
-        """Where it is, as users write it: a URL or host:port; known after `start`."""
-
-    @property
-    def clients(self) -> list[str]:
-        """The addresses of the clients that are connected now."""
 
     async def start(self) -> None:
         """Listen.

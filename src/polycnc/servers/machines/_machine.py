@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field, fields
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import Any, Protocol, TypeVar
 
 from polycnc.cnc import Control
 from polycnc.errors import PolycncError
@@ -15,9 +15,6 @@ from polycnc.servers.machines._programs import MemoryPrograms, Programs
 from polycnc.servers.machines._scenario import ServedDevice
 from polycnc.servers.machines._screens import Screen, Tasks
 from polycnc.servers.machines._values import NO_PARAMETERS, NO_SIGNALS, NO_VARIABLES, Values
-
-if TYPE_CHECKING:
-    from polycnc.servers.machines._door import Door
 
 R = TypeVar("R")
 
@@ -35,6 +32,18 @@ AS_USUAL = Treatment()
 
 def _as_usual(_: str) -> Treatment:
     return AS_USUAL
+
+
+class OpenDoor(Protocol):
+    """A door to a machine, as others see it."""
+
+    @property
+    def said(self) -> str:
+        """Where it is, as users write it: a URL or host:port; known after `start`."""
+
+    @property
+    def clients(self) -> list[str]:
+        """The addresses of the clients that are connected now."""
 
 
 class MachineError(PolycncError):
@@ -81,7 +90,7 @@ class ServedMachine(Made):
     treat: Callable[[str], Treatment] = _as_usual
     """A door tells its name with every request, and does with it what is said."""
 
-    doors: dict[str, Door] = field(default_factory=dict)
+    doors: dict[str, OpenDoor] = field(default_factory=dict)
     """The doors to it by name, those that it shares with others among them."""
 
     def __post_init__(self) -> None:

@@ -3,12 +3,19 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, overload
+from typing import Any, Protocol, overload
 
 from polycnc.controllers.apci.board._system_axis import LEAST
 
-if TYPE_CHECKING:
-    from polycnc.controllers.apci.board._axis import Axis
+
+class HasRow(Protocol):
+    """Who has parameters."""
+
+    row: Any
+    time_unit_s: float
+
+    def change_units(self) -> None:
+        """Take over what follows from parameters on which units depend."""
 
 
 class Parameter:
@@ -27,14 +34,14 @@ class Parameter:
     @overload
     def __get__(self, axis: None, owner: type) -> Parameter: ...
     @overload
-    def __get__(self, axis: Axis, owner: type) -> float: ...
-    def __get__(self, axis: Axis | None, owner: type) -> Parameter | float:
+    def __get__(self, axis: HasRow, owner: type) -> float: ...
+    def __get__(self, axis: HasRow | None, owner: type) -> Parameter | float:
         """Return the number in the axis' units."""
         if axis is None:
             return self
         return float(axis.row[self.name] * axis.time_unit_s**self.per)
 
-    def __set__(self, axis: Axis, value: float) -> None:
+    def __set__(self, axis: HasRow, value: float) -> None:
         """Store the number; one that is none is left out, so that it cannot get into a profile."""
         if math.isfinite(value) and (value >= LEAST or not self.above_zero):
             axis.row[self.name] = value / axis.time_unit_s**self.per

@@ -7,7 +7,7 @@ when it is to have a turn, and is reclaimed when it needs Python or somebody ask
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -20,6 +20,7 @@ from polycnc.controllers.apci.sap._program import Program
 from polycnc.controllers.apci.sap._task import State, Task, Wait
 from polycnc.controllers.apci.sap._translation import (
     KIND_OF,
+    BoardHost,
     Slot,
     Translation,
     mask_of,
@@ -28,15 +29,12 @@ from polycnc.controllers.apci.sap._translation import (
 from polycnc.jit import Ready
 from polycnc.kernel import KernelState
 
-if TYPE_CHECKING:
-    from polycnc.controllers.apci.sap._board_host import BoardHost
-
 _TYPES = (int, float, bool)  # by kind
 _WORTH_SCANS = 4  # that a task stays away for
 _PATIENCE_MOST = 64  # scans between two attempts that are of no use
 
 
-class Away:
+class _Away:
     """The state of one task in the compiled scan."""
 
     def __init__(self, turns: CompiledTurns, task: Task) -> None:
@@ -155,7 +153,7 @@ class CompiledTurns:
         turns.condition[row["event"] : row["event"] + events, 1] = task.armed[:events]
         self._put_wait(number, task.waiting)
         self._since[number] = self._host.scan
-        task.away = Away(self, task)
+        task.away = _Away(self, task)
 
     def _fail(self, number: int) -> None:
         """Note that it was of no use to send a task away."""

@@ -7,7 +7,7 @@ import struct
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from enum import Enum
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple, Protocol
 
 from polycnc.controllers.apci.core._turn_steps import LATE, WAIT_UNIT_S
 from polycnc.controllers.apci.sap._cnc_file import read_cnc, write_cnc
@@ -17,9 +17,6 @@ from polycnc.controllers.apci.sap._linker import link
 from polycnc.controllers.apci.sap._machine import CELL_BYTES, FRAME_CELLS, STACK_CELLS, Pause, Step
 from polycnc.controllers.apci.sap._program import Program, cell_values
 from polycnc.errors import PolycncError
-
-if TYPE_CHECKING:
-    from polycnc.controllers.apci.sap._compiled_turns import Away
 
 STRING_BYTES = 512
 HALT_AT_WRITELN = 1 << 26  # in MODEREG
@@ -67,6 +64,16 @@ class TaskStatus(NamedTuple):
     csrcline: int
 
 
+class Offloaded(Protocol):
+    """What has the state of a task while it is not in the task itself."""
+
+    def reclaim(self) -> None:
+        """Put the state back into the task."""
+
+    def where(self) -> tuple[int, int, int, bool]:
+        """Return the next instruction, cells on the stack, frames, and whether the task waits."""
+
+
 class Task:
     """Run the program of one task a number of instructions at a time; see `Tasks` for the public calls."""
 
@@ -85,7 +92,7 @@ class Task:
         self.next = 0
         self._errnum = self._errline = 0
         self._steps: list[Step] = []
-        self.away: Away | None = None  # has stack, memory, frames, wait and place of the program
+        self.away: Offloaded | None = None  # has stack, memory, frames, wait and place of the program
         self._by_writeln = False
         self._in_event = False
         self._waiting_before: Wait | None = None  # of the program that an event handler interrupts

@@ -8,7 +8,7 @@ from __future__ import annotations
 import struct
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any, TypeAlias
+from typing import Any, Protocol, TypeAlias
 
 import numpy as np
 
@@ -17,11 +17,9 @@ from polycnc.controllers.apci.core import _turn_values as tv
 from polycnc.controllers.apci.core._turn_state import BOOLEAN, DOUBLE, INTEGER
 from polycnc.controllers.apci.sap import _commands
 from polycnc.controllers.apci.sap._arithmetic import wrap
+from polycnc.controllers.apci.sap._host import Host
 from polycnc.controllers.apci.sap._program import Cells, Program
 from polycnc.errors import PolycncError
-
-if TYPE_CHECKING:
-    from polycnc.controllers.apci.sap._board_host import BoardHost
 
 KIND_OF: dict[type, int] = {int: INTEGER, float: DOUBLE, bool: BOOLEAN}
 _KIND_OF_LETTER = {"i": INTEGER, "d": DOUBLE, "b": BOOLEAN}
@@ -77,6 +75,22 @@ _LEFT_TO_PYTHON = frozenset(
 
 Row: TypeAlias = tuple[int, int, int, int, int, int, float]
 """Operation, cells it takes, kind of its result, three arguments, a number."""
+
+
+class BoardHost(Host, Protocol):
+    """What a board gives beside what any host of tasks does."""
+
+    def velocity_unit_s(self, axis: int) -> float:
+        """Return by what velocities of an axis are multiplied for programs."""
+
+    def alarms(self, axis: int) -> int:
+        """Return the bits of digi that no scan changes."""
+
+    def system_field(self, name: str) -> Sequence[float]:
+        """Return a field of system variables."""
+
+    def axis_field(self, axis: int, name: str) -> Sequence[float]:
+        """Return a field of variables of an axis."""
 
 
 @dataclass(frozen=True, slots=True)
