@@ -42,7 +42,7 @@ def test_several_machines_in_one_process_are_machines_of_their_own() -> None:
             ("--count", "300", "--address", "127.255.255.1"),
             "there are no 300 addresses from 127.255.255.1 on",
         ),
-        (("--faults", "none.toml"), "none.toml: cannot be read"),
+        (("--faults", "none.toml"), "cannot read 'none.toml'"),
     ],
 )
 def test_what_cannot_be_served_is_said(arguments: tuple[str, ...], said: str, tmp_path: Path) -> None:
