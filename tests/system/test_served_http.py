@@ -8,7 +8,7 @@ import socket
 import subprocess
 import sys
 import threading
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import suppress
 from pathlib import Path
 from typing import Any
@@ -16,6 +16,8 @@ from typing import Any
 import pytest
 from hypothesis import Phase, given, settings
 
+from polycnc.cli._snapshot import restore_command, snapshot_command
+from polycnc.errors import UsageError
 from support import operator_page, page_answers
 from support.browser import browser, new_page
 from support.command import polycnc, python
@@ -308,3 +310,30 @@ def test_schemathesis_finds_nothing(tmp_path: Path) -> None:
     finally:
         served.end()
     assert done.returncode == 0, done.stdout[-5000:]
+
+
+def test_a_state_is_kept_in_a_file_and_gone_back_to(
+    served: Served, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    for name in ("machine", "board", "two"):
+        file = tmp_path / name
+        snapshot_command(served.url, file, machine=name)
+        restore_command(file, served.url, machine=name)
+        with pytest.raises(UsageError, match="snapshot of"):
+            restore_command(file, served.url, machine="board" if name != "board" else "two")
+    assert capsys.readouterr().out.count(": written\n") == 3
+    with pytest.raises(UsageError, match="4 machines are served") as error:
+        snapshot_command(served.url, tmp_path / "none")
+    assert error.value.hint == "Name one: machine, pnc, board, two."
+    assert not (tmp_path / "none").exists()
+    (tmp_path / "text").write_text("O1")
+    refused: dict[str, Callable[[], None]] = {
+        "this is not a snapshot": lambda: restore_command(tmp_path / "text", served.url, machine="two"),
+        "there is no such machine": lambda: snapshot_command(served.url, tmp_path / "none", machine="other"),
+        "nobody answers": lambda: snapshot_command("http://127.0.0.1:9", tmp_path / "none"),
+        "is no address of a page": lambda: snapshot_command("127.0.0.1", tmp_path / "none"),
+        "cannot read": lambda: snapshot_command(served.url, tmp_path / "none", token=tmp_path / "secret"),
+    }
+    for what, ask in refused.items():
+        with pytest.raises(UsageError, match=what):
+            ask()

@@ -219,6 +219,15 @@ def test_a_snapshot_brings_back_the_state_bit_for_bit() -> None:
         again = (await client.get("/status")).json()
         assert again["axes"] == first["axes"]
         assert (await client.get("/snapshots")).json() == [kept]
+        file = (await client.get("/snapshot")).content
+        assert file.startswith(b"polycnc snapshot")
+        assert (await client.post("/clock", json={"step": 77})).status_code == 200
+        status = (await client.put("/snapshot", content=file)).json()
+        assert status == again
+        assert (await client.get("/snapshot")).content == file
+        for wrong in (b"", b"O1", file[:-1], file[:60] + bytes([file[60] ^ 1]) + file[61:]):
+            refused(await client.put("/snapshot", content=wrong), 409)
+        assert (await client.get("/snapshot")).content == file
         refused(await client.post("/restore", json={"name": "other"}), 404)
         refused(await client.post("/snapshot", json={"name": "../x"}), 422)
         for number in range(15):

@@ -31,6 +31,7 @@ def test_whoever_does_not_hold_it_changes_nothing_but_may_hold_and_stop() -> Non
             ("PUT", "/offsets/G55", {"values": {"X": 3}}),
             ("POST", "/clock", {"rate": 0}), ("POST", "/snapshot", {"name": "s"}), ("POST", "/restore", {"name": "s"}),
             ("PUT", "/variables/x", {"value": 3}), ("DELETE", "/snapshots/s", None),
+            ("PUT", "/snapshot", None),
         ]  # fmt: skip
         for keys in ({}, shows("berts-key-0815")):
             for method, path, body in asked:

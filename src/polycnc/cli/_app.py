@@ -25,6 +25,7 @@ from polycnc.cli import (
     _sap,
     _schema,
     _serve,
+    _snapshot,
     _view,
     _warmup,
 )
@@ -71,6 +72,8 @@ _COMMANDS = (
     ("machine", _machine.machine_command, "Show a machine's axes and limits."),
     ("serve", _serve.serve_command, "Serve a simulated control to clients on the network."),
     ("rehearse", _rehearse.rehearse_command, "Say what happens in a scenario, without waiting for it."),
+    ("snapshot", _snapshot.snapshot_command, "Keep the state of a served machine in a file."),
+    ("restore", _snapshot.restore_command, "Let a served machine go back to a kept state."),
     ("clib", _clib.clib_command, "Write and build a C library that old programs link against."),
     ("calls", _calls.calls_command, "Serve a machine to C programs, and trace what they call."),
     ("conformance", _conformance.conformance_command, "Show which parts of the manuals are tested."),

@@ -27,6 +27,7 @@ Plain: TypeAlias = Mapping[str, Any]
 
 MAGIC = b"polycnc snapshot\n"
 VERSION = 2
+_MOST_BYTES = 1 << 28
 _HEAD = struct.Struct("<I32sQ")  # version, SHA-256 of the rest, its length
 
 
@@ -134,7 +135,7 @@ class Snapshot:
         """
         start = len(MAGIC) + _HEAD.size
         if not content.startswith(MAGIC):
-            raise SnapshotError("this is not a snapshot", hint="give what Snapshot.to_bytes has written")
+            raise SnapshotError("this is not a snapshot", hint="give a file that was written from one")
         if len(content) < start:
             raise damaged_snapshot("it is cut off")
         version, digest, size = _HEAD.unpack(content[len(MAGIC) : start])
@@ -147,7 +148,7 @@ class Snapshot:
         if len(body) != size or hashlib.sha256(body).digest() != digest:
             raise damaged_snapshot("its check sum is wrong")
         try:
-            return cls._read(zlib.decompress(body))
+            return cls._read(_decompressed(body))
         except (
             ValueError,
             TypeError,
@@ -177,6 +178,14 @@ class Snapshot:
             tuple(blocks),
             str(head["beside"]),
         )
+
+
+def _decompressed(body: bytes) -> bytes:
+    unpacking = zlib.decompressobj()
+    content = unpacking.decompress(body, _MOST_BYTES)
+    if not unpacking.eof:
+        raise ValueError("it is larger than any device's state, or cut off")
+    return content
 
 
 def arrays_of(value: object) -> list[Array]:

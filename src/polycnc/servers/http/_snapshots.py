@@ -1,7 +1,8 @@
-"""Snapshots of a machine: kept by name in the process, gone back to as a whole."""
+"""Snapshots of a machine: kept by name in the process or by a client as a file, gone back to as a whole."""
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Annotated
 
 from fastapi import APIRouter, Request, Response
@@ -12,8 +13,11 @@ from polycnc.machine import Snapshot
 from polycnc.servers.http._body import checked, json_object
 from polycnc.servers.http._documents import status_json
 from polycnc.servers.http._found import JSON, ONE, STATUS, Found, answer, body
+from polycnc.servers.machines import ServedMachine
 
 MOST_SNAPSHOTS = 16
+BYTES = "application/octet-stream"
+_FILE = {"type": "string", "format": "binary"}
 _Name = Annotated[str, StringConstraints(pattern=r"^[A-Za-z0-9][A-Za-z0-9 _.-]{0,63}$")]
 
 
@@ -38,6 +42,19 @@ class SnapshotRoutes:
         self._found = found
         self._kept: dict[str, dict[str, Snapshot]] = {name: {} for name in found.machines}
         asked = body(SnapshotAsked.model_json_schema())
+        router.get(
+            f"{ONE}/snapshot",
+            summary="The present state as a file.",
+            response_class=Response,
+            responses=answer(_FILE, BYTES),
+        )(self.file)
+        router.put(
+            f"{ONE}/snapshot",
+            summary="Go back to the state of a file.",
+            openapi_extra=body(_FILE, BYTES),
+            response_class=Response,
+            responses=answer(STATUS),
+        )(self.restore_file)
         router.get(f"{ONE}/snapshots", summary="The snapshots that are kept.")(self.list)
         router.post(f"{ONE}/snapshot", summary="Keep the present state.", openapi_extra=asked)(self.keep)
         router.post(
@@ -70,12 +87,19 @@ class SnapshotRoutes:
         """Go back to a state; the answer is the status then."""
         found = self._found.machine(machine)
         kept = self._of(machine, checked(SnapshotAsked, await json_object(request)).name)
+        return await _gone_back(found, lambda: kept)
 
-        def go_back() -> bytes:
-            found.device.restore(kept)
-            return status_json(found)
+    async def file(self, machine: str) -> Response:
+        """Return the present state as the contents of a file."""
+        found = self._found.machine(machine)
+        state = await found.ask(found.device.snapshot)
+        return Response(state.to_bytes(), media_type=BYTES)
 
-        return Response(await found.ask(go_back), media_type=JSON)
+    async def restore_file(self, machine: str, request: Request) -> Response:
+        """Go back to the state of a file; the answer is the status then."""
+        found = self._found.machine(machine)
+        content = await request.body()
+        return await _gone_back(found, lambda: type(found.device.snapshot()).from_bytes(content))
 
     async def forget(self, machine: str, name: str) -> Response:
         """Delete a snapshot."""
@@ -89,3 +113,11 @@ class SnapshotRoutes:
         if kept is None:
             raise ControlError(Refusal.NOT_FOUND, "there is no such snapshot", hint="See the list of them.")
         return kept
+
+
+async def _gone_back(machine: ServedMachine, state: Callable[[], Snapshot]) -> Response:
+    def go_back() -> bytes:
+        machine.device.restore(state())
+        return status_json(machine)
+
+    return Response(await machine.ask(go_back), media_type=JSON)

@@ -1,0 +1,5 @@
+"""Ask a machine that another process serves."""
+
+from polycnc.servers.asking._asked import Asked
+
+__all__ = ["Asked"]
