@@ -37,6 +37,7 @@ SCRIPTS = {
     "bench_calls.py": "C library",
     "bench_plants.py": "MTConnect agent",
     "bench_fleet.py": "Fleets",
+    "bench_served.py": "Served machine",
     "bench_batch.py": "Batches",
     "bench_stock.py": "Stock",
 }
