@@ -16,7 +16,6 @@ if TYPE_CHECKING:
     from polycnc.servers.setup import Plan
 
 _MOST_END_S = 0.85  # after a signal
-_FIRST_S = 0.1  # in which whoever has waited for the doors is answered, before compiled functions are loaded
 _MOST_LINES = 20  # of doors that are named one by one
 
 
@@ -187,7 +186,7 @@ async def serve_plan(plan: Plan, *, is_part: bool = False) -> None:
             _say_doors([(name, door.said) for name, door, _ in serving.doors])
         await asyncio.sleep(0)  # whoever wants it to end already
         gc.collect()
-        await serving.begin(_FIRST_S)
+        await serving.begin()
         gc.freeze()  # what has been made until now lasts: no collection goes through it again
         if is_part:
             part.begin(serving.machines)

@@ -96,13 +96,12 @@ class Serving:
                 machine.doors[kind.name] = door
             self.log.write("open", door=kind.name, address=door.said)
 
-    async def begin(self, first_s: float = 0.0) -> None:
-        """Start the programs, answer who asks for `first_s`, and let time begin; what is compiled is loaded then.
+    async def begin(self) -> None:
+        """Start the programs and let time begin; what has to be compiled is compiled here.
 
         Machines begin one after the other: what happens in all of them after the same time does not happen at once.
         """
         await self.start_programs()
-        await asyncio.sleep(first_s)
         for machine in self.machines:
             await asyncio.sleep(0)  # whoever wants it to end does not wait for the others
             machine.served.advance(1)
