@@ -332,8 +332,14 @@ def test_a_state_is_kept_in_a_file_and_gone_back_to(
         "there is no such machine": lambda: snapshot_command(served.url, tmp_path / "none", machine="other"),
         "nobody answers": lambda: snapshot_command("http://127.0.0.1:9", tmp_path / "none"),
         "is no address of a page": lambda: snapshot_command("127.0.0.1", tmp_path / "none"),
+        "serves no machines": lambda: snapshot_command(f"{served.url}/?", tmp_path / "none"),
+        "the command reads that file": lambda: snapshot_command(
+            served.url, tmp_path / "text", token=tmp_path / "text"
+        ),
+        "larger than any snapshot": lambda: restore_command(Path("/dev/zero"), served.url, machine="two"),
         "cannot read": lambda: snapshot_command(served.url, tmp_path / "none", token=tmp_path / "secret"),
     }
     for what, ask in refused.items():
         with pytest.raises(UsageError, match=what):
             ask()
+    assert (tmp_path / "text").read_text() == "O1"

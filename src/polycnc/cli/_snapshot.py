@@ -9,6 +9,7 @@ import typer
 
 from polycnc.cli._output import say
 
+_MOST_BYTES = 16 << 20  # that a server takes
 _At = Annotated[str, typer.Argument(help="Where its page is, like http://127.0.0.1:8080.", metavar="URL")]
 _Machine = Annotated[
     str | None, typer.Option("--machine", "-m", help="Its name, where several are served.", metavar="NAME")
@@ -23,11 +24,13 @@ def snapshot_command(
     token: _Token = None,
 ) -> None:
     """Keep the whole state of a served machine, which runs on, in a file."""
-    from polycnc.outputs import complete_or_absent
+    from polycnc.outputs import check_output, complete_or_absent, keep_inputs
     from polycnc.servers.asking import Asked
 
+    path = check_output(file, (), "the snapshot")
+    keep_inputs(path, (token,), "the snapshot")
     asked = Asked(url, token)
-    with complete_or_absent(file) as partial:
+    with complete_or_absent(path) as partial:
         partial.write_bytes(asked.snapshot(machine))
     say(f"{file}: written")
 
@@ -43,8 +46,11 @@ def restore_command(
     from polycnc.servers.asking import Asked
 
     try:
-        content = file.read_bytes()
+        with file.open("rb") as stream:
+            content = stream.read(_MOST_BYTES + 1)
     except OSError as error:
         raise UsageError(f"{file}: {error.strerror or error}", hint="Give the file of a snapshot.") from None
+    if len(content) > _MOST_BYTES:
+        raise UsageError(f"{file}: larger than any snapshot", hint="Give the file of a snapshot.")
     status: dict[str, Any] = Asked(url, token).restore(content, machine)
     say(f"{status.get('time_s', 0.0):.3f} s")

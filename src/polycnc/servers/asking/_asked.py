@@ -6,13 +6,16 @@ import http.client
 import json
 import urllib.error
 import urllib.request
+from collections.abc import Callable
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 from urllib.parse import quote
 
 from polycnc.errors import UsageError
 
+T = TypeVar("T")
 _WAIT_S = 60.0
+_MOST_BYTES = 1 << 26
 _START = "Start it with polycnc serve --doors http, and give the address that it prints."
 
 
@@ -46,23 +49,29 @@ class Asked:
         Raises:
             UsageError: Nobody answers, or the state is not one of this machine.
         """
-        status: dict[str, Any] = json.loads(self._answer("PUT", f"{self._named(machine)}/snapshot", content))
-        return status
+        answer = self._answer("PUT", f"{self._named(machine)}/snapshot", content)
+        return self._understood(answer, lambda found: dict(found))
 
     def _named(self, machine: str | None) -> str:
         if machine is not None:
             return quote(machine, safe="")
-        names = [each["name"] for each in json.loads(self._answer("GET", ""))]
+        names = self._understood(self._answer("GET", ""), lambda found: [str(each["name"]) for each in found])
         if len(names) != 1:
             raise UsageError(f"{len(names)} machines are served", hint=f"Name one: {', '.join(names[:10])}.")
         return quote(names[0], safe="")
+
+    def _understood(self, answer: bytes, read: Callable[[Any], T]) -> T:
+        try:
+            return read(json.loads(answer))
+        except (ValueError, LookupError, TypeError, RecursionError):
+            raise UsageError(f"what answers at {self._url} serves no machines", hint=_START) from None
 
     def _answer(self, method: str, path: str, body: bytes | None = None) -> bytes:
         at = f"{self._url}/api/machines/{path}".rstrip("/")
         try:
             request = urllib.request.Request(at, body, self._headers, method=method)
             with urllib.request.urlopen(request, timeout=_WAIT_S) as answer:
-                return bytes(answer.read())
+                return bytes(answer.read(_MOST_BYTES))
         except urllib.error.HTTPError as error:
             raise _refusal(error) from None
         except (OSError, ValueError, http.client.HTTPException) as error:
