@@ -10,7 +10,7 @@ import pytest
 
 from polycnc.servers.machines import ServedMachine
 from polycnc.servers.process import Machinery
-from support.http_app import visit
+from support.http_app import Slow, visit
 
 PLAIN = Machinery("m", "mill3")
 FANUC = Machinery("m", axes=2)
@@ -201,6 +201,26 @@ def test_the_clock_freezes_steps_and_jumps_to_the_next_event(kind: str) -> None:
             refused(await client.post("/clock", json=asked), 422)
 
     visit(kind, PLAIN if kind == "plain" else FANUC, ask)
+
+
+def test_a_step_is_answered_when_it_has_passed_however_long_that_lasts(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Time has a hundredth of a second in one go, and rests after it: requests find the machine in the middle."""
+
+    async def ask(client: Any, machine: ServedMachine) -> None:
+        await client.post("/clock", json={"freeze": True})
+        passes = machine.served.advance
+
+        def advance(cycles: int, **_: Any) -> int:
+            wall.pass_s(0.02)
+            return passes(min(cycles, 150))
+
+        monkeypatch.setattr(machine.served, "advance", advance)
+        for _ in range(3):
+            before = (await client.get("/clock")).json()["cycles"]
+            assert (await client.post("/clock", json={"step": 333})).json()["cycles"] == before + 333
+
+    wall = Slow(5e-6)
+    visit("plain", PLAIN, ask, wall)
 
 
 def test_a_snapshot_brings_back_the_state_bit_for_bit() -> None:

@@ -69,6 +69,11 @@ class Pace:
             self._since_s, self._done, self._rate = self._wall.now_s(), 0, rate
         self._changed()
 
+    @property
+    def steps_left(self) -> int:
+        """How many cycles of those that `step` made due have not passed yet."""
+        return self._steps
+
     def forget(self) -> None:
         """Let what is late not be caught up with."""
         with self._lock:

@@ -14,7 +14,6 @@ from polycnc.servers.http._found import ONE, Found, body
 from polycnc.servers.machines import ServedMachine
 
 MOST_STEP, MOST_RATE = 1_000_000, 1000.0
-_MOST_IDLE = 100  # looks at a device whose time does not pass
 _SHARE_S = 0.01
 _Cycles = Annotated[int, Field(ge=1, le=MOST_STEP)]
 
@@ -97,14 +96,11 @@ class ClockRoutes:
 
 async def _step(machine: ServedMachine, cycles: int) -> None:
     """Let cycles pass beside the pace, and wait until they have; other clients are answered meanwhile."""
-    clock = machine.served.clock
-    before = await machine.ask(lambda: clock.cycles)
-    machine.keeper.pace.step(cycles)
-    last, idle = before, 0
-    while clock.cycles - before < cycles and idle < _MOST_IDLE:
+    pace = machine.keeper.pace
+    await machine.ask(lambda: pace.step(cycles))
+    while pace.steps_left:  # time has its share of the wall clock, and rests
         await asyncio.sleep(0)
-        now = await machine.ask(lambda: clock.cycles)
-        last, idle = now, idle + 1 if now == last else 0
+        await machine.ask(lambda: None)
 
 
 async def _jump(machine: ServedMachine, cycles: int) -> None:

@@ -24,7 +24,7 @@ class ScenarioPage extends Page {
       make("p", { class: "row" }, button("scenario-start", TEXTS.scenario_start, () => this.give("start")), button("scenario-stop", TEXTS.scenario_stop, () => this.give("stop")), this.state),
       this.steps, make("h3", {}, TEXTS.happened), this.past, make("h3", {}, TEXTS.scenario_text), make("p", { class: "hint" }, TEXTS.scenario_hint), this.editor,
       make("p", { class: "row after" }, button("scenario-put", TEXTS.scenario_put, () => this.begin())), this.wrong);
-    this.again(true);
+    this.again();
   }
 
   async give(what) { this.tell(await this.link.json("scenario", { method: "POST", body: JSON.stringify({ do: what }) })); }
@@ -37,10 +37,14 @@ class ScenarioPage extends Page {
     if (answer?.ok) this.tell(told);
   }
 
-  async again(first = false) {
+  async again() {
+    const { text } = this.editor;
+    text.readOnly = !this.loaded; // nothing is typed before what is there
     const told = await this.link.json("scenario");
+    text.readOnly = false;
     if (!told) { this.close(); return; }
-    if (first && !this.editor.value) this.editor.value = told.source || TEXTS.scenario_example;
+    if (!this.loaded && !this.editor.value) this.editor.value = told.source || TEXTS.scenario_example;
+    this.loaded = true;
     this.tell(told);
   }
   tell(told) {
