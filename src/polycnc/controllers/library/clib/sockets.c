@@ -43,15 +43,26 @@ static int pc_send(pc_socket socket, const unsigned char *bytes, uint32_t size, 
     }
 }
 
+/* How often an answer is looked for before it is waited for, about a tenth of a millisecond in all: most answers come
+   by then, and being woken takes longer. */
+enum { PC_TRIES = 200 };
+
 /* Receive some bytes, at most so many; 0 if nothing more comes. */
 static uint32_t pc_some(pc_socket socket, unsigned char *bytes, uint32_t most, int64_t *until, int wait_ms)
 {
     int got;
+#ifdef _WIN32
     (void)until;
     (void)wait_ms;
-#ifdef _WIN32
     got = (int)recv(socket, (char *)bytes, (int)most, 0);
 #else
+    int tries;
+    for (tries = 0; tries < PC_TRIES; tries++) {
+        got = (int)recv(socket, (char *)bytes, most, MSG_DONTWAIT);
+        if (got >= 0)
+            return (uint32_t)got;
+        sched_yield();
+    }
     do
         got = (int)recv(socket, (char *)bytes, most, 0);
     while (got < 0 && errno == EINTR && !pc_is_late(until, wait_ms));
