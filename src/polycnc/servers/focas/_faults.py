@@ -6,17 +6,19 @@ Nothing here is random and nothing looks at a wall clock: the same script and th
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from enum import StrEnum
+from functools import cache
 from pathlib import Path
-from typing import Self
+from typing import TYPE_CHECKING, Self
 
 from pydantic import Field, model_validator
 
-from polycnc.controllers.fanuc import PowerMate
-from polycnc.controllers.fanuc.wire import LAYOUTS
 from polycnc.machine import StrictModel, load_toml, validate
+
+if TYPE_CHECKING:
+    from polycnc.controllers.fanuc import PowerMate
 
 
 class FaultKind(StrEnum):
@@ -43,11 +45,18 @@ class FaultKind(StrEnum):
 
 
 _OF_MACHINE = (FaultKind.EMERGENCY_STOP, FaultKind.ALARM)
-_CODES = {
-    name: target_code
-    for target_code, layout in LAYOUTS.items()
-    for name in layout.function.replace(" (old series)", "").split(", ")
-}
+
+
+@cache
+def _codes() -> Mapping[str, tuple[int, int]]:
+    """Return the target and code of each command by its name."""
+    from polycnc.controllers.fanuc.wire import LAYOUTS  # most scenarios name none
+
+    return {
+        name: target_code
+        for target_code, layout in LAYOUTS.items()
+        for name in layout.function.replace(" (old series)", "").split(", ")
+    }
 
 
 class Fault(StrictModel):
@@ -75,7 +84,7 @@ class Fault(StrictModel):
             raise ValueError("a fault ends after `for_s` or after `for_requests`")
         if (self.kind is FaultKind.LATENCY) != (self.delay_s > 0.0):
             raise ValueError("`delay_s` belongs to the kind latency")
-        if unknown := [name for name in self.commands if name not in _CODES]:
+        if self.commands and (unknown := [name for name in self.commands if name not in _codes()]):
             raise ValueError(f"no command is called {unknown[0]}")
         if self.commands and self.kind is not FaultKind.NO_OPTION:
             raise ValueError("`commands` belong to the kind no_option")
@@ -84,7 +93,7 @@ class Fault(StrictModel):
     @property
     def codes(self) -> frozenset[tuple[int, int]]:
         """The commands that it is about, by target and code; empty: all."""
-        return frozenset(_CODES[name] for name in self.commands)
+        return frozenset(_codes()[name] for name in self.commands)
 
 
 class _Script(StrictModel):

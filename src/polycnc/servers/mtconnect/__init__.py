@@ -3,17 +3,17 @@
 from typing import TYPE_CHECKING
 
 from polycnc.on_demand import names_on_demand
-from polycnc.servers.mtconnect._agent import Agent, Answer, StreamAsked
-from polycnc.servers.mtconnect._device import DeviceModel, Item, device_model, model_of, value_text
-from polycnc.servers.mtconnect._documents import Header, asset_text, devices_document
-from polycnc.servers.mtconnect._errors import Code
-from polycnc.servers.mtconnect._observations import Buffer, Observation
-from polycnc.servers.mtconnect._recorder import Change, Looked, Recorder, time_text
 from polycnc.servers.mtconnect._rows import CONDITIONS, ROWS, USUAL_VERSION, VERSIONS, Row, Version
-from polycnc.servers.mtconnect._xpath import PathError, choose, tree_of
 
 if TYPE_CHECKING:
+    from polycnc.servers.mtconnect._agent import Agent, Answer, StreamAsked
+    from polycnc.servers.mtconnect._device import DeviceModel, Item, device_model, model_of, value_text
+    from polycnc.servers.mtconnect._documents import Header, asset_text, devices_document
     from polycnc.servers.mtconnect._door import MTConnectDoor
+    from polycnc.servers.mtconnect._errors import Code
+    from polycnc.servers.mtconnect._observations import Buffer, Observation
+    from polycnc.servers.mtconnect._recorder import Change, Looked, Recorder, time_text
+    from polycnc.servers.mtconnect._xpath import PathError, choose, tree_of
 
 __all__ = [
     "CONDITIONS",

@@ -5,17 +5,19 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from datetime import timedelta
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any, cast
 
 from pydantic import Field, ValidationError
 
 from polycnc.cnc import Control, RunState
-from polycnc.controllers.fanuc import PowerMate
 from polycnc.errors import UsageError
 from polycnc.machine import StrictModel
 from polycnc.servers.commands import COMMANDS, carry_out, model_of, told
 from polycnc.servers.focas import Fault, FaultKind
 from polycnc.servers.machines import ServedMachine
+
+if TYPE_CHECKING:
+    from polycnc.controllers.fanuc import PowerMate
 
 Undo = Callable[[], object]
 _Text = Annotated[str, Field(max_length=255)]
@@ -86,8 +88,8 @@ def _control(machine: ServedMachine) -> Control:
 
 
 def _mate(machine: ServedMachine) -> PowerMate:
-    assert isinstance(machine.device, PowerMate)
-    return machine.device
+    assert machine.kind == "fanuc"
+    return cast("PowerMate", machine.device)
 
 
 # ---------------------------------------------------------------------- what happens to a machine
