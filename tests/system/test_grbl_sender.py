@@ -22,6 +22,7 @@ from support.started import started, started_python
 
 MACHINE = Path(__file__).parents[1] / "support" / "grbl_machine.py"
 NODE = Path(os.environ.get("POLYCNC_NODE", Path.home() / ".cache" / "polycnc" / "node")) / "node_modules"
+SENDERS = Path(os.environ.get("POLYCNC_SENDERS", Path.home() / ".cache" / "polycnc" / "senders"))
 TUTORIAL = Path(__file__).parents[2] / "docs" / "tutorials" / "your-sender.md"
 PROGRAM = (
     "G21 G90\n" + "".join(f"G1 X{n % 9} Y{n % 5} F6000\n" for n in range(60)) + "G2 X1\nG0 X3 Y0\nG4 P0\n"
@@ -139,6 +140,37 @@ def test_cncjs_opens_the_terminal_and_sends_a_program(tmp_path: Path) -> None:
         "modal": "G21", "fastest": "30000.000", "load": None, "sent": [6, 6, 6],
         "position": {"x": "7.500", "y": "0.000", "z": "0.000"},
     }  # fmt: skip
+
+
+@pytest.mark.skipif(
+    not any(SENDERS.glob("lib/python*/site-packages/bCNC")),
+    reason="no bCNC: python -m venv ~/.cache/polycnc/senders, and its pip install bCNC grbl-streamer",
+)
+@pytest.mark.parametrize(
+    ("client", "over", "expected"),
+    [
+        ("bcnc_client.py", "tcp", {"fastest": "30000.000", "override": 150}),
+        ("grbl_streamer_client.py", "terminal", {}),
+    ],
+)
+def test_senders_of_others_send_hold_and_override(
+    client: str, over: str, expected: dict[str, Any], tmp_path: Path
+) -> None:
+    """bCNC's own sender, without its window, and grbl-streamer, which counts characters."""
+    terminal = tmp_path / "tty"
+    with (
+        started_python(MACHINE, "0", str(terminal), "1") as process,
+        machine(process, f" and {re.escape(str(terminal))}") as port,
+    ):
+        program = "G21 G90|G1 X20 Y5 F600|G2 X1 I-9.5 J0|G0 X7.5 Y0|G4 P0.1"
+        done = subprocess.run(
+            [SENDERS / "bin" / "python", MACHINE.with_name(client),
+             f"socket://127.0.0.1:{port}" if over == "tcp" else terminal, program],
+            capture_output=True, text=True, timeout=150, check=False, env={**os.environ, "HOME": str(tmp_path)},
+        )  # fmt: skip
+    assert done.returncode == 0, done.stderr
+    said = dict(json.loads(line) for line in done.stdout.splitlines())
+    assert said == {"position": [7.5, 0.0, 0.0], "errors": [], **expected}
 
 
 def test_the_conversation_of_the_tutorial() -> None:
