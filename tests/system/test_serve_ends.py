@@ -117,6 +117,14 @@ def test_a_program_that_takes_long_to_load_is_not_waited_for(tmp_path: Path) -> 
     assert took_s < LATE_S + 25 * slow_s()  # other tests run beside
 
 
+def test_a_program_that_is_not_there_is_told_before_any_door(tmp_path: Path) -> None:
+    said, error = started(
+        "serve", "--fanuc", "--program", tmp_path / "gone.nc", "--doors", "focas=0"
+    ).communicate(timeout=60)
+    assert said == ""
+    assert "gone.nc: cannot be read" in error
+
+
 def check_kept(memory: Path) -> None:
     """Assert that what was acknowledged is there, and nothing of what was not."""
     again = Process("--fanuc", "--memory", memory, "--doors", "http=0")

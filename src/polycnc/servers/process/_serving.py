@@ -62,7 +62,8 @@ class Serving:
     machines: list[ServedMachine] = field(default_factory=list)
     doors: list[tuple[str, Door, Sequence[ServedMachine]]] = field(default_factory=list)
     """Each with the machines that it serves."""
-    programs: dict[str, Path] = field(default_factory=dict)
+    programs: dict[str, tuple[str, bytes]] = field(default_factory=dict)
+    """Name and content of what each machine runs."""
     told: set[str] = field(default_factory=set)
     """Kinds of errors that `on_error` has been told of, once each."""
 
@@ -114,7 +115,10 @@ class Serving:
         """Start the programs, without letting time pass."""
         for machine in self.machines:
             if (found := self.programs.get(machine.name)) is not None:
-                _start(machine, found)
+                assert machine.load is not None
+                assert machine.served.again is not None
+                machine.load(*found)
+                machine.served.again()
 
     async def run(self) -> None:
         """Serve until the time of a machine cannot pass any more, or this is cancelled."""
@@ -157,7 +161,11 @@ class Serving:
                 raise UsageError(
                     f"machine {name} runs no part programs", hint="Leave the program out, or serve another."
                 )
-            self.programs[name] = wanted.program
+            try:
+                self.programs[name] = (wanted.program.name, _read(wanted.program))
+            except UsageError:
+                made.end()
+                raise
         served: ServedDevice[Any] = ServedDevice(
             made.device,
             made.find_control,
@@ -187,18 +195,13 @@ def _again(made: Made) -> Callable[[], None]:
     return again
 
 
-def _start(machine: ServedMachine, path: Path) -> None:
-    """Let a machine take a program over, and start it."""
+def _read(path: Path) -> bytes:
+    """Return what a program file holds."""
     try:
         if path.stat().st_size > _MOST_PROGRAM_BYTES:
             raise UsageError(
                 f"{path}: larger than {_MOST_PROGRAM_BYTES >> 20} MB", hint="Serve a smaller one."
             )
-        content = path.read_bytes()
+        return path.read_bytes()
     except OSError as error:
         raise UsageError(f"{path}: cannot be read: {error.strerror}", hint="Name a program file.") from None
-    again = machine.served.again
-    assert machine.load is not None
-    assert again is not None
-    machine.load(path.name, content)
-    again()
