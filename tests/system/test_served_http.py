@@ -262,8 +262,7 @@ def test_the_page_operates_the_machine(size: tuple[int, int], served: Served, ch
         page.wait_for_timeout(20)
     page.keyboard.up("ArrowRight")
     if size[0] > 1000:
-        page_answers.turn_faster_than_answers(page, served)
-        page_answers.choose_before_the_answer(page)
+        page_answers.answer_late(page, served)
         operator_page.operate(page, served)
     for width, height in {size, (820, 1180)} if size[0] > 1000 else {size}:
         page.set_viewport_size({"width": width, "height": height})
