@@ -159,7 +159,7 @@ _SHOWN = """() => {
 
 
 _SAME = "return Object.keys(expected).every((key) => JSON.stringify(shown[key]) === JSON.stringify(expected[key]));"
-WAIT_MS = 5_000
+WAIT_MS = 60_000
 
 
 class Page:

@@ -80,7 +80,7 @@ class Served:
         self.line.close()
         self.http.close()
         self.process.terminate()
-        _, error = self.process.communicate(timeout=10)
+        _, error = self.process.communicate(timeout=60)
         assert self.process.returncode == 143
         assert "Traceback" not in error, error
 

@@ -13,7 +13,6 @@ from pydantic_core import to_json
 from polycnc.cnc import Inventory, Status
 from polycnc.servers.machines import ServedMachine
 
-
 NUMBER_HEADER = "polycnc-number"
 _NUMBERS = itertools.count(1)
 
