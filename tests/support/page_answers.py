@@ -157,6 +157,33 @@ def choose_before_a_block_is_taken(page: Any, served: Any) -> None:
     page.wait_for_selector("#channel", state="hidden")
 
 
+def hold_before_the_start_is_given(page: Any, served: Any) -> None:
+    """Press feed hold while a cycle start still waits for the mode: it does not start after the hold."""
+    _hold(page, "commands", asks=True)
+    for key in ("[data-mode=auto]", "#cycle_start", "#feed_hold"):
+        page.click(key)
+    until(page, lambda: page.evaluate("waiting.length") == 2)
+    page.evaluate("letGo()")
+    page.wait_for_selector("[data-mode=auto][aria-pressed=true]")
+    _see_more(page)
+    assert served.status()["channels"][0]["run_state"] in ("ready", "reset", "completed")
+
+
+def choose_two_before_either_answers(page: Any) -> None:
+    """Choose another machine and the first again: the last choice counts, and no key acts before it is shown."""
+    _hold(page, "/", asks=False)
+    for name in ("two", "machine"):
+        page.select_option("#machine", name)
+    until(page, lambda: page.evaluate("waiting.length") == 2)
+    page.keyboard.press("Alt+r")
+    assert page.evaluate("waiting.length") == 2
+    page.evaluate("letGo()")
+    page.wait_for_selector("main:not([inert])")
+    _see_more(page)
+    assert page.input_value("#machine") == "machine"
+    assert page.is_hidden("#channel")
+
+
 def answer_late(page: Any, served: Any) -> None:
     """Do all of it."""
     turn_faster_than_answers(page, served)
@@ -165,7 +192,9 @@ def answer_late(page: Any, served: Any) -> None:
     write_before_the_text_comes(page)
     set_breakpoints_before_the_answer(page, served)
     type_while_an_offset_is_taught(page, served)
+    hold_before_the_start_is_given(page, served)
     choose_before_a_block_is_taken(page, served)
+    choose_two_before_either_answers(page)
 
 
 def _hold(page: Any, what: str, *, asks: bool) -> None:
