@@ -114,7 +114,7 @@ class Opcua:
         from asyncua.sync import Client
 
         self._ua = ua
-        self._client = Client(url, timeout=30)
+        self._client = Client(url, timeout=60)
         self._client.connect()
         self._nodes = [self._client.get_node(ua.NodeId(path, 1)) for path in OPCUA.values()]
 

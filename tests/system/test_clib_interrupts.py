@@ -113,7 +113,7 @@ def _interrupt(door: Door) -> None:
         board.raise_interrupt(False)
 
     assert door.loop is not None
-    asyncio.run_coroutine_threadsafe(rise(), door.loop).result(20)
+    asyncio.run_coroutine_threadsafe(rise(), door.loop).result(60)
 
 
 def test_a_routine_is_replaced_removed_lost_and_found(

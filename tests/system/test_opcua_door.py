@@ -365,7 +365,7 @@ class Seen:
     async def until(self, done: Callable[[], bool]) -> None:
         while not done():
             self.news.clear()
-            await asyncio.wait_for(self.news.wait(), 20)
+            await asyncio.wait_for(self.news.wait(), 60)
 
 
 async def see_refreshed(client: Client, served: Served) -> None:

@@ -41,7 +41,7 @@ def with_door(name: str, kind: str, machinery: Machinery, visit: Callable[[int],
 async def ended(reader: asyncio.StreamReader) -> bytes:
     """Return what still comes until the connection ends."""
     try:
-        return await asyncio.wait_for(reader.read(), 20)
+        return await asyncio.wait_for(reader.read(), 60)
     except ConnectionError:
         return b""
 
@@ -108,7 +108,7 @@ def test_an_answer_that_is_never_read_ends_its_connection(
             question = b"GET %b HTTP/1.1\r\nHost: localhost\r\n\r\n" % path
             await loop.sock_sendall(line, question * 500)
             with pytest.raises(ConnectionError):  # answers that nobody reads, until it is over
-                await asyncio.wait_for(asking(loop, line, question), 20)
+                await asyncio.wait_for(asking(loop, line, question), 60)
 
     with_door(name, "plain", Machinery("m", "mill3"), visit)
 
@@ -179,18 +179,18 @@ def test_a_download_that_stops_half_way_blocks_no_other_for_long(monkeypatch: py
     async def open_line(port: int) -> tuple[asyncio.StreamReader, asyncio.StreamWriter]:
         reader, writer = await asyncio.open_connection("127.0.0.1", port)
         writer.write(opening)
-        assert await asyncio.wait_for(reader.read(4096), 20)
+        assert await asyncio.wait_for(reader.read(4096), 60)
         writer.write(start)
         return reader, writer
 
     async def visit(port: int) -> None:
         reader, writer = await open_line(port)
-        first = await asyncio.wait_for(reader.read(4096), 20)
+        first = await asyncio.wait_for(reader.read(4096), 60)
         other, other_writer = await open_line(port)
-        assert await asyncio.wait_for(other.read(4096), 20) != first  # refused: one comes in already
+        assert await asyncio.wait_for(other.read(4096), 60) != first  # refused: one comes in already
         assert await ended(reader) == b""
         again, again_writer = await open_line(port)
-        assert await asyncio.wait_for(again.read(4096), 20) == first
+        assert await asyncio.wait_for(again.read(4096), 60) == first
         for each in (writer, other_writer, again_writer):
             each.close()
 
