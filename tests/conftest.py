@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import gc
 import os
+import signal
 import sys
 from collections import Counter
 from pathlib import Path
@@ -11,6 +12,9 @@ from pathlib import Path
 # Hundreds of processes start in the tests: byte code is kept, whatever the surroundings say.
 os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
 sys.dont_write_bytecode = False
+# A shell starts what runs in its background with Ctrl-C ignored, and every process of the tests would inherit that.
+if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
+    signal.signal(signal.SIGINT, signal.default_int_handler)
 # Before polycnc is imported: tests may call compiled functions that are not entries.
 os.environ["POLYCNC_OPEN_INTERNALS"] = "1"
 # And they try compiled code, whatever was compiled before them.

@@ -57,7 +57,7 @@ class AllDoors:
         self.line.close()
         self.http.close()
         self.process.terminate()
-        _, error = self.process.communicate(timeout=30)
+        _, error = self.process.communicate(timeout=60)
         return error
 
     def command(self, command: str, **given: Any) -> int:
@@ -90,7 +90,7 @@ class AllDoors:
 
     def streamed(self, cycle: int) -> dict[str, Any]:
         """Return what the stream shows of a cycle."""
-        while (status := json.loads(self.stream.recv(timeout=20))["status"])["cycle"] < cycle:
+        while (status := json.loads(self.stream.recv(timeout=60))["status"])["cycle"] < cycle:
             pass
         found: dict[str, Any] = status
         return found

@@ -50,6 +50,7 @@ def new_page(running: Any, *, draws: bool = False, **settings: Any) -> Any:
     Without a graphics card a picture costs ten times what the page does for it, and few tests look at pictures.
     """
     page = running.new_page(**{"viewport": {"width": 1280, "height": 800}, **settings})
+    page.set_default_timeout(60_000)
     if not draws:
         page.add_init_script(_DRAWS_NOTHING)
     return page

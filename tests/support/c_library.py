@@ -112,7 +112,7 @@ class Door:
             for _ in range(200):
                 await asyncio.sleep(0)  # one look at all sockets
 
-        asyncio.run_coroutine_threadsafe(look(), self.loop).result(20)
+        asyncio.run_coroutine_threadsafe(look(), self.loop).result(60)
         return len(self._door.lines)
 
     def close(self) -> None:
@@ -121,7 +121,7 @@ class Door:
         assert self._end is not None
         with suppress(RuntimeError):
             self.loop.call_soon_threadsafe(self._end.set)
-        self._thread.join(20)
+        self._thread.join(60)
         assert not self._thread.is_alive()
 
 

@@ -10,6 +10,7 @@ import select
 import subprocess
 import sys
 import tempfile
+import time
 from pathlib import Path
 
 from polycnc.jit import COMPILING
@@ -94,6 +95,13 @@ def python(
     return done
 
 
+def slow_s() -> float:
+    """Return how long this computer takes now for what it does in 0.02 s when it has time."""
+    begun_s = time.perf_counter()
+    subprocess.run([sys.executable, "-S", "-c", "pass"], check=True)
+    return time.perf_counter() - begun_s
+
+
 def _answered(
     words: list[str], cwd: Path | None, request: dict[str, object]
 ) -> subprocess.CompletedProcess[str]:
@@ -114,7 +122,7 @@ def request_of(request: dict[str, object]) -> int:
     server.stdin.flush()
     if not select.select([server.stdout], [], [], TIMEOUT_S)[0]:
         _server.cache_clear()
-        server.kill()
+        _end(server)
         raise subprocess.TimeoutExpired([*COMMAND, str(request.get("arguments"))], TIMEOUT_S)
     return int(server.stdout.readline())
 
@@ -130,5 +138,11 @@ def _server(environment: tuple[tuple[str, str], ...]) -> subprocess.Popen[str]:
         text=True,
         encoding="utf-8",
     )
-    atexit.register(server.kill)
+    atexit.register(_end, server)
     return server
+
+
+def _end(server: subprocess.Popen[str]) -> None:
+    """End it, and wait until it has: what is left running is complained about at the end of the tests."""
+    server.kill()
+    server.communicate()

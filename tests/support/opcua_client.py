@@ -32,7 +32,7 @@ def main(url: str) -> None:
         say("too much", refused(lambda: client.write(f"{CHANNEL}/CmdOverride", 630.0)))
         say("fixed", refused(lambda: client.write(f"{CHANNEL}/ActOverride", 63.0)))
         say("override", float(client.read(f"{CHANNEL}/ActOverride")))
-        end = time.monotonic() + 10.0
+        end = time.monotonic() + 60.0
         while not any("63" in str(each) for each in seen) and time.monotonic() < end:
             client.read(f"{CHANNEL}/Id")
         say("changed", any("63" in str(each) for each in seen))

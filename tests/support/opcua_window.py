@@ -42,7 +42,7 @@ def say(name: str, value: Any) -> None:
 
 
 def until(done: Any) -> bool:
-    end = time.monotonic() + 20.0
+    end = time.monotonic() + 60.0
     while not done() and time.monotonic() < end:
         QApplication.processEvents()
     return bool(done())

@@ -336,7 +336,7 @@ def operate_the_lease(page: Any, served: Any) -> None:
 
 def until(page: Any, holds: Any) -> None:
     """Wait until something holds."""
-    for _ in range(500):
+    for _ in range(3000):
         if holds():
             return
         page.wait_for_timeout(20)

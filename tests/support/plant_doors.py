@@ -114,7 +114,7 @@ class Opcua:
         from asyncua.sync import Client
 
         self._ua = ua
-        self._client = Client(url, timeout=30)
+        self._client = Client(url, timeout=60)
         self._client.connect()
         self._nodes = [self._client.get_node(ua.NodeId(path, 1)) for path in OPCUA.values()]
 
@@ -159,7 +159,7 @@ _SHOWN = """() => {
 
 
 _SAME = "return Object.keys(expected).every((key) => JSON.stringify(shown[key]) === JSON.stringify(expected[key]));"
-WAIT_MS = 5_000
+WAIT_MS = 60_000
 
 
 class Page:

@@ -32,6 +32,8 @@ class Started:
         self.pid = int(self._status.readline())
         self.stdout: IO[str] = open(names[0], encoding="utf-8")  # noqa: SIM115
         self.stderr: IO[str] = open(names[1], encoding="utf-8")  # noqa: SIM115
+        self._said = ["", "", ""]
+        self._readers: list[threading.Thread] = []
 
     def send_signal(self, number: int) -> None:
         """Send a signal, if it has not ended."""
@@ -52,16 +54,18 @@ class Started:
         Raises:
             subprocess.TimeoutExpired: It has not ended within the time.
         """
-        said = ["", "", ""]
+        said, outputs = self._said, (self.stdout, self.stderr, self._status)
 
         def read(number: int, of: IO[str]) -> None:
             said[number] = of.read()
 
-        outputs = (self.stdout, self.stderr, self._status)
-        threads = [threading.Thread(target=read, args=each, daemon=True) for each in enumerate(outputs)]
-        for each in threads:
-            each.start()
-        for each in reversed(threads):
+        if not self._readers:  # those of a call that has timed out go on reading
+            self._readers = [
+                threading.Thread(target=read, args=each, daemon=True) for each in enumerate(outputs)
+            ]
+            for each in self._readers:
+                each.start()
+        for each in reversed(self._readers):
             each.join(timeout)
             if each.is_alive():
                 raise subprocess.TimeoutExpired(self.args, timeout or 0.0)

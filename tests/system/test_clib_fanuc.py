@@ -266,7 +266,7 @@ def _clients(rounds: int) -> None:
     before = len(os.listdir(OPEN_FILES)) if OPEN_FILES.exists() else 0
     try:
         for number in range(rounds):
-            with socket.create_connection(("127.0.0.1", port), timeout=20) as line:
+            with socket.create_connection(("127.0.0.1", port), timeout=60) as line:
                 line.sendall(hello + opening[: number % (len(opening) + 1)])
                 assert line.recv(12, socket.MSG_WAITALL) == b"PNCCALL1" + bytes(4)
         assert door.clients() == 0

@@ -113,7 +113,7 @@ def _interrupt(door: Door) -> None:
         board.raise_interrupt(False)
 
     assert door.loop is not None
-    asyncio.run_coroutine_threadsafe(rise(), door.loop).result(20)
+    asyncio.run_coroutine_threadsafe(rise(), door.loop).result(60)
 
 
 def test_a_routine_is_replaced_removed_lost_and_found(
@@ -130,10 +130,10 @@ def test_a_routine_is_replaced_removed_lost_and_found(
     assert library.MCUG3_SetBoardIntRoutine(first.c) == 0
     for _ in range(3):
         _interrupt(door)
-        assert first.came.acquire(timeout=20)
+        assert first.came.acquire(timeout=60)
     assert library.MCUG3_SetBoardIntRoutine(second.c) == 0
     _interrupt(door)
-    assert second.came.acquire(timeout=20)
+    assert second.came.acquire(timeout=60)
     door.close()
     assert library.rdtrvl(ctypes.byref(ctypes.c_double())) == -4
     again = Door(("apci", Machinery(file=SYSTEM)))
@@ -141,7 +141,7 @@ def test_a_routine_is_replaced_removed_lost_and_found(
         at_door(monkeypatch, again)
         assert library.InitMcuSystem(records) == 0
         _interrupt(again)
-        assert second.came.acquire(timeout=20)
+        assert second.came.acquire(timeout=60)
         assert library.MCUG3_ResetBoardIntRoutine() == 0
         _interrupt(again)
         assert library.InitMcuSystem(records) == 0

@@ -89,7 +89,7 @@ def test_a_program_against_the_command(tmp_path: Path, capsys: pytest.CaptureFix
     place = process.stdout.readline().partition(" ")[2].strip()
     assert _run(place, program) == facade_says()
     process.terminate()
-    _, error = process.communicate(timeout=30)
+    _, error = process.communicate(timeout=60)
     assert (process.returncode, error) == (143, "")
     lines = trace.read_text().splitlines()
     assert len(lines) == 7

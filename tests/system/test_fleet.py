@@ -8,11 +8,13 @@ import signal
 import time
 from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
 import pytest
 
 from polycnc.errors import PolycncError
 from polycnc.servers.setup import Flags, load_serve_file, plan_of
+from support.command import slow_s
 from support.started import Started, started
 
 httpx = pytest.importorskip("httpx", reason="pip install httpx")
@@ -77,7 +79,7 @@ class Running:
         self.lines: list[str] = []
         while not self.lines or not self.lines[-1].startswith("ready"):
             line = self.process.stdout.readline()
-            assert line, self.process.communicate(timeout=20)
+            assert line, self.process.communicate(timeout=60)
             self.lines.append(line.strip())
         self.children = children(self.process.pid)
 
@@ -100,19 +102,25 @@ def test_a_fleet_says_where_everything_is_and_ends_as_one(fleet: Running) -> Non
     assert len(fleet.children) == 2
     answer = httpx.get(f"{at['mill2 mtconnect']}/mill2/current", timeout=60)
     assert 'name="mill2"' in answer.text
-    figures = httpx.get(metrics, timeout=60).text
-    up = dict(re.findall(r'polycnc_machine_up\{machine="([^"]+)",process="(\d)"\} 1\.0', figures))
+    up: dict[str, str] = {}
+    for _ in range(30):  # a process that has no time for two seconds is left out
+        figures = httpx.get(metrics, timeout=60).text
+        up = dict(re.findall(r'polycnc_machine_up\{machine="([^"]+)",process="(\d)"\} 1\.0', figures))
+        if len(up) == len(NAMES):
+            break
     assert up == {"mill1": "1", "mill2": "1", "mill3": "2", "lathe-1-b": "2", "lathe-2-b": "2"}
     assert figures.count("\npolycnc_machine_lateness_seconds{") == 5
-    assert httpx.get(metrics.replace("/metrics", "/health"), timeout=60).json() == {
-        "status": "ok",
-        "machines": 5,
-    }
+    health: dict[str, Any] = {}
+    for _ in range(30):
+        health = httpx.get(metrics.replace("/metrics", "/health"), timeout=60).json()
+        if health["status"] == "ok":
+            break
+    assert health == {"status": "ok", "machines": 5}
     begun_s = time.perf_counter()
     fleet.process.terminate()
-    _, error = fleet.process.communicate(timeout=30)
+    _, error = fleet.process.communicate(timeout=60)
     assert (fleet.process.returncode, error) == (143, "")
-    assert time.perf_counter() - begun_s < 5.0  # a second, on a computer that has time
+    assert time.perf_counter() - begun_s < 5.0 + 25 * slow_s()  # a second, on a computer that has time
     assert not any(map(is_there, fleet.children))
 
 
@@ -120,7 +128,7 @@ def test_a_fleet_says_where_everything_is_and_ends_as_one(fleet: Running) -> Non
 @pytest.mark.parametrize("who", ["first", "other"])
 def test_no_process_of_a_fleet_is_left_when_one_is_killed(who: str, fleet: Running) -> None:
     os.kill(fleet.process.pid if who == "first" else fleet.children[1], signal.SIGKILL)
-    _, error = fleet.process.communicate(timeout=30)
+    _, error = fleet.process.communicate(timeout=60)
     if who == "other":
         assert fleet.process.returncode == 1
         assert "process 2 of the fleet has ended with status -9" in error

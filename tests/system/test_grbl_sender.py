@@ -66,7 +66,7 @@ def machine(process: Any, expected: str) -> Iterator[int]:
         yield int(found[1])
     finally:
         process.send_signal(signal.SIGINT)
-        _, errors = process.communicate(timeout=30)
+        _, errors = process.communicate(timeout=60)
         assert "Traceback" not in errors, errors
 
 
@@ -103,15 +103,19 @@ def test_a_program_is_streamed_over_tcp_and_over_the_terminal(tmp_path: Path) ->
 @contextmanager
 def cncjs(folder: Path) -> Iterator[str]:
     """Run the server of CNCjs, with nobody to sign in; yield its URL."""
-    with socket.create_server(("127.0.0.1", 0)) as free:
-        port = str(free.getsockname()[1])
     (folder / "cncjs.json").write_text("{}")
     program, settings = NODE / "cncjs" / "bin" / "cncjs", folder / "cncjs.json"
-    command = ["node", str(program), "-H", "127.0.0.1", "-p", port, "-c", str(settings)]
+    command = ["node", str(program), "-H", "127.0.0.1", "-p", "0", "-c", str(settings)]
     with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True) as server:
         try:
-            assert any("Starting the server" in line for line in server.stdout or ())
-            yield f"http://127.0.0.1:{port}"
+            said: list[str] = []
+            for line in server.stdout or ():
+                said.append(line)
+                if found := re.search(r"Starting the server at \S*?(http://127\.0\.0\.1:\d+)", line):
+                    break
+            else:
+                raise AssertionError("".join(said))
+            yield found[1]
         finally:
             server.kill()
 

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 
+from support.command import slow_s
 from support.focas_line import Line, free_port, serve
 
 MACHINES = 20
@@ -43,7 +44,8 @@ def test_machines_that_wait_answer_and_end(kind: str, tmp_path: Path) -> None:
             line.close()
         begun_s = time.perf_counter()
         process.terminate()
-        _, error = process.communicate(timeout=20)
-    assert time.perf_counter() - begun_s < END_S
+        _, error = process.communicate(timeout=60)
+    ended_s, slow = time.perf_counter() - begun_s, slow_s()  # other tests run beside
+    assert ended_s < END_S + 25 * slow
     assert "Traceback" not in error
-    assert took_s[len(took_s) // 2] < MEDIAN_S
+    assert took_s[len(took_s) // 2] < MEDIAN_S + 5 * slow

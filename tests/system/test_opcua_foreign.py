@@ -29,7 +29,7 @@ def urls() -> Iterator[dict[str, str]]:
     said = [process.stdout.readline().partition(" ") for _ in range(2)]
     yield {name: at.strip() for name, _, at in said}
     process.terminate()
-    _, error = process.communicate(timeout=30)
+    _, error = process.communicate(timeout=60)
     assert "Traceback" not in error, error
 
 

@@ -57,7 +57,7 @@ class Served:
         self.rest.close()
         self.agent.close()
         self.process.terminate()
-        _, error = self.process.communicate(timeout=20)
+        _, error = self.process.communicate(timeout=60)
         assert self.process.returncode == 143
         assert "Traceback" not in error, error
 
@@ -190,7 +190,7 @@ def test_the_pages_show_what_happens(tmp_path: Path) -> None:
             assert script(tmp_path / name, "", tmp_path).stdout == expected, name
     finally:
         process.terminate()
-        process.communicate(timeout=20)
+        process.communicate(timeout=60)
     command = re.findall(r"```sh\npolycnc (mtconnect .*?)\n```", pages[1].read_text("utf-8"))[0]
     polycnc(*command.split(), cwd=tmp_path)
     assert 'name="Mill4"' in (tmp_path / "Devices.xml").read_text("utf-8")

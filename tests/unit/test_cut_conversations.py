@@ -19,7 +19,7 @@ from support.often import share
 
 pytest.importorskip("fastapi", reason="pip install 'polycnc[serve]'")
 
-QUIET_S = 0.05
+QUIET_TURNS = 50  # of the event loop that the door is in, however long they take
 
 
 FWLIB = LIBRARIES["fanuc"].load()
@@ -70,7 +70,7 @@ CONVERSATIONS: dict[str, tuple[str, list[bytes]]] = {
     "focas": ("fanuc", FOCAS), "http": ("plain", HTTP), "mtconnect": ("plain", MTCONNECT), "grbl": ("plain", GRBL),
     "shdr": ("plain", SHDR), "calls": ("fanuc", CALLS),
 }  # fmt: skip
-_CHANGES = re.compile(rb'date: [^\r]*|creationTime="[^"]*"|instanceId="[^"]*"|requestTime="[^"]*"')
+_CHANGES = re.compile(rb'(?:date|polycnc-number): [^\r]*|creationTime="[^"]*"|instanceId="[^"]*"|requestTime="[^"]*"')
 
 
 async def talk(name: str, pieces: Iterable[bytes]) -> bytes:
@@ -85,20 +85,28 @@ async def talk(name: str, pieces: Iterable[bytes]) -> bytes:
             writer.write(piece)
             await asyncio.sleep(0)
             await asyncio.sleep(0)
-        said = b""
-        while True:
-            try:
-                more = await asyncio.wait_for(reader.read(1 << 16), QUIET_S if said else 20)
-            except (TimeoutError, ConnectionError):
-                break
-            if not more:
-                break
-            said += more
-        return _CHANGES.sub(b"", said)
+        return _CHANGES.sub(b"", await all_that_comes(reader))
     finally:
         writer.close()
         await door.close()
         machine.close()
+
+
+async def all_that_comes(reader: asyncio.StreamReader) -> bytes:
+    """Return what comes until the end, or until nothing has come for some turns after something has."""
+    said = b""
+    while True:
+        reading = asyncio.ensure_future(reader.read(1 << 16))
+        for turn in range(60_000):
+            if reading.done() or (said and turn >= QUIET_TURNS):
+                break
+            await asyncio.sleep(0.001)
+        if not reading.done():
+            reading.cancel()
+            return said
+        if reading.exception() is not None or not reading.result():
+            return said
+        said += reading.result()
 
 
 def cuts(name: str) -> list[list[bytes]]:

@@ -35,12 +35,12 @@ class Line:
         for each in pieces:
             self.writer.write(each)
             await asyncio.sleep(0)
-        return await asyncio.wait_for(self.reader.readuntil(until), 20)
+        return await asyncio.wait_for(self.reader.readuntil(until), 60)
 
 
 async def of_http(line: Line, path: bytes) -> bytes:
     line.writer.write(GET % path)
-    return await asyncio.wait_for(line.reader.readexactly(15), 20)
+    return await asyncio.wait_for(line.reader.readexactly(15), 60)
 
 
 async def of_calls(line: Line) -> bytes:
@@ -49,7 +49,7 @@ async def of_calls(line: Line) -> bytes:
     for at in range(0, len(OPEN), 5):
         line.writer.write(OPEN[at : at + 5])
         await asyncio.sleep(0)
-    return await asyncio.wait_for(line.reader.readexactly(26), 20)
+    return await asyncio.wait_for(line.reader.readexactly(26), 60)
 
 
 async def of_grbl(line: Line) -> bytes:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import re
 from pathlib import Path
 from typing import Any
@@ -223,6 +224,24 @@ def test_a_step_is_answered_when_it_has_passed_however_long_that_lasts(
 
     wall = Slow(5e-6)
     visit("plain", PLAIN, ask, wall)
+
+
+def test_what_is_told_later_has_a_larger_number() -> None:
+    async def ask(client: Any, machine: ServedMachine) -> None:
+        from polycnc.servers.http._lease import Lease
+        from polycnc.servers.http._stream import Stream
+
+        stream = Stream(None, machine, 5.0, Lease())  # type: ignore[arg-type]
+        holder = {"operator": "Anna", "key": "annas-key-4711"}
+        numbers = []
+        for _ in range(2):
+            numbers.append(json.loads(stream._message())["number"])
+            for place, asked in (("/commands", {"command": "reset"}), ("/lease", holder)):
+                answer = await client.post(place, json=asked, headers={"polycnc-key": "annas-key-4711"})
+                numbers.append(int(answer.headers["polycnc-number"]))
+        assert numbers == sorted(set(numbers))
+
+    visit("plain", PLAIN, ask)
 
 
 def test_a_snapshot_brings_back_the_state_bit_for_bit() -> None:

@@ -30,7 +30,7 @@ from polycnc.servers.opcua._machine_tool import PRODUCTION_STATE
 from polycnc.servers.opcua._model import UNITS, Type
 from polycnc.servers.opcua._moment import At, Fixed
 from polycnc.servers.opcua._node_sets import IN_ORDER, find_node_sets
-from polycnc.servers.opcua._publish import _plain
+from polycnc.servers.opcua._publish import Publisher, _plain
 from polycnc.servers.opcua._standard import bounded_server
 from polycnc.servers.opcua._writes import Writes
 from polycnc.servers.plant import FACTS, see
@@ -309,3 +309,30 @@ def test_the_page_names_every_member() -> None:
         for member in row.members:
             name = member.name.rpartition("/")[2]
             assert f"`{name}`" in page or row.name == "CncAlarmType", (row.name, name)
+
+
+def test_what_is_published_is_never_older_than_what_was_before() -> None:
+    """A client writes while the values of an earlier cycle are still being written."""
+    cycles, written = iter(range(1, 9)), []
+
+    class Told(Publisher):
+        def _read(self) -> Any:
+            return next(cycles), 0
+
+        async def _publish(self, seen: Any, revision: int) -> None:
+            for _ in range(3):
+                await asyncio.sleep(0)
+                written.append(seen)
+
+    async def ask(question: Any) -> Any:
+        return question()
+
+    async def run() -> None:
+        machine: Any = SimpleNamespace(ask=ask, control=None)
+        other: Any = SimpleNamespace()
+        told = Told(machine, other, (), other, {}, other, other)
+        await asyncio.gather(*(told.refresh() for _ in range(3)))
+
+    asyncio.run(run())
+    assert written == sorted(written)
+    assert len(written) == 9

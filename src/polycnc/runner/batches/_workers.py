@@ -16,6 +16,7 @@ Chunk = list[Job]
 Reported = list[tuple[str, Answer]]
 _PLUGIN = "polycnc-batch"
 _MOST_SENT = 5  # times that workers are sent what is the same for all programs
+_LOOK_S = 0.5
 _AHEAD = 3  # chunks for each worker that are on their way
 
 
@@ -45,14 +46,14 @@ class LocalWorkers:
             )
             for child in children
         ]
-        for thread in threads:
-            thread.start()
         under_way = 0
         try:
+            for thread in threads:
+                thread.start()
             for _ in range(_AHEAD * self.count):
                 under_way += _next(chunks, todo)
             while under_way:
-                reported = done.get()
+                reported = _taken(done)
                 if isinstance(reported, Exception):
                     raise reported
                 under_way += _next(chunks, todo) - 1
@@ -63,7 +64,17 @@ class LocalWorkers:
             for _ in threads:
                 todo.put(None)
             for thread in threads:
-                thread.join()
+                if thread.ident is not None:
+                    thread.join()
+
+
+def _taken(done: queue.Queue[Reported | Exception]) -> Reported | Exception:
+    """Return what comes next; a Ctrl-C right before the wait begins does not interrupt it, so it is begun anew."""
+    while True:
+        try:
+            return done.get(timeout=_LOOK_S)
+        except queue.Empty:
+            continue
 
 
 def _next(chunks: Iterator[Chunk], todo: queue.Queue[Chunk | None]) -> int:

@@ -13,6 +13,7 @@ from starlette.requests import HTTPConnection
 
 from polycnc.errors import PolycncError
 from polycnc.servers.http._body import checked, json_object
+from polycnc.servers.http._documents import NUMBER_HEADER, next_number
 from polycnc.servers.http._found import ONE, Found, body
 from polycnc.servers.machines import ServedMachine
 
@@ -137,12 +138,13 @@ class LeaseRoutes:
         self._found.machine(machine)
         return self._leases.of(machine).shown()
 
-    async def take_lease(self, machine: str, request: Request) -> LeaseShown:
+    async def take_lease(self, machine: str, request: Request, response: Response) -> LeaseShown:
         """Hold a machine, or go on holding it."""
         self._found.machine(machine)
         asked = checked(LeaseAsked, await json_object(request))
         before = self._leases.of(machine).shown().holder
         shown = self._leases.of(machine).take(asked)
+        response.headers[NUMBER_HEADER] = str(next_number())
         if before != shown.holder:
             self._found.log.write("lease", machine=machine, holder=shown.holder, before=before)
         return shown

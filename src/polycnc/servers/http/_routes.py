@@ -14,7 +14,7 @@ from polycnc.servers.http._body import json_object
 from polycnc.servers.http._check import CheckRoutes
 from polycnc.servers.http._clock import ClockRoutes
 from polycnc.servers.http._data import DataRoutes
-from polycnc.servers.http._documents import as_json, status_json
+from polycnc.servers.http._documents import NUMBER_HEADER, as_json, next_number, status_json
 from polycnc.servers.http._found import JSON, ONE, REFUSALS, STATUS, Found, answer, body
 from polycnc.servers.http._lease import KeyShown, LeaseRoutes, Leases, is_for_all
 from polycnc.servers.http._path import PathRoutes
@@ -170,13 +170,13 @@ class Api:
         if not is_for_all(asked):
             self._leases.of(machine).check(key)
 
-        def done() -> bytes:
+        def done() -> tuple[bytes, int]:
             carry_out(found, asked)
-            return status_json(found)
+            return status_json(found), next_number()
 
-        shown = await found.ask(done)
+        shown, number = await found.ask(done)
         self._found.log.write("command", machine=machine, door="http", asked=asked)
-        return Response(shown, media_type=JSON)
+        return Response(shown, media_type=JSON, headers={NUMBER_HEADER: str(number)})
 
     async def stream(self, socket: WebSocket, machine: str) -> None:
         """Send statuses until the viewer leaves."""

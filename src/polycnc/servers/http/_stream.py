@@ -11,7 +11,7 @@ from starlette.websockets import WebSocket, WebSocketDisconnect
 
 from polycnc.errors import PolycncError
 from polycnc.servers.commands import carry_out
-from polycnc.servers.http._documents import inventory_parts, status_json
+from polycnc.servers.http._documents import inventory_parts, next_number, status_json
 from polycnc.servers.http._lease import Lease
 from polycnc.servers.machines import ServedMachine
 
@@ -69,7 +69,8 @@ class Stream:
         status = status_json(self._machine).decode()
         parts = inventory_parts(self._machine, self._known)
         rate, lease = self._machine.keeper.pace.rate, self._lease.shown().model_dump_json()
-        return f'{{"status":{status},"inventory":{json.dumps(parts)},"rate":{rate!r},"lease":{lease}}}'
+        told = f'"status":{status},"inventory":{json.dumps(parts)},"rate":{rate!r},"lease":{lease}'
+        return f'{{"number":{next_number()},{told}}}'
 
     async def _read(self) -> None:
         while True:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 from collections.abc import Sequence
 from dataclasses import dataclass
 from datetime import UTC
@@ -64,14 +65,16 @@ class Publisher:
         self._alarms = alarms
         self._last: Status | None = None
         self._see = see(self._control)
+        self._turn = asyncio.Lock()
 
     async def refresh(self) -> None:
-        """Write what has changed since the last time; the values are those of one cycle.
+        """Write what has changed since the last time; the values are those of one cycle, none older than those before.
 
         Raises:
             MachineError: The machine's time cannot pass any more.
         """
-        await self._publish(*await self.machine.ask(self._read))
+        async with self._turn:
+            await self._publish(*await self.machine.ask(self._read))
 
     async def begin(self) -> None:
         """Write everything for the first time; no machine time passes."""

@@ -23,7 +23,7 @@ export function channelChoice(link, chosen) {
 export class Switches {
   constructor(link) {
     this.held = Object.fromEntries(SWITCHES.map((name) => [name, new Held()]));
-    this.elements = SWITCHES.map((name) => toggle(name, TEXTS[name], (on) => this.held[name].send(() => link.command("set_switches", { [name]: on }))));
+    this.elements = SWITCHES.map((name) => toggle(name, TEXTS[name], (on) => this.held[name].send(link.given("set_switches", { [name]: on }))));
   }
   show(switches) {
     for (const name of SWITCHES) if (!this.held[name].holds) $(name).setAttribute("aria-pressed", switches[name]);
@@ -37,7 +37,7 @@ export class Marks {
     this.held = new Held();
     const turn = () => {
       const marks = isPressed(this.key) ? [...this.chosen] : [];
-      this.held.send(() => link.command("set_switches", { block_delete: marks }));
+      this.held.send(link.given("set_switches", { block_delete: marks }));
     };
     this.key = toggle("block_delete", TEXTS.block_delete, turn);
     this.head = make("summary", { "aria-label": TEXTS.marks, title: TEXTS.marks });

@@ -1,17 +1,16 @@
-// What an operator has just turned: it stays as he left it until what the machine shows is surely newer.
-const OLDER_MS = 300; // a status that was sent before the command was carried out may come so long after its answer
-
+// What an operator has just turned: it stays as he left it until the machine has answered.
 export class Held {
-  constructor() { Object.assign(this, { pending: 0, untilMs: -Infinity, last: Promise.resolve() }); }
+  // `since`: the number of the last answer; what was told before it is older.
+  constructor() { Object.assign(this, { pending: 0, since: 0, last: Promise.resolve() }); }
 
-  get holds() { return this.pending > 0 || performance.now() < this.untilMs; }
+  get holds() { return this.pending > 0; }
 
-  // Commands are sent one after the other, in the order of the presses; each tells whether it has been carried out.
+  // Commands are sent one after the other, in the order of the presses.
   send(command) {
     this.pending++;
-    this.last = this.last.then(command).catch(() => false).then((isDone) => {
+    this.last = this.last.then(command).catch(() => 0).then((number) => {
       this.pending--;
-      this.untilMs = isDone ? performance.now() + OLDER_MS : -Infinity;
+      this.since = Math.max(this.since, number);
     });
   }
 }

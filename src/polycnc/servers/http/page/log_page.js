@@ -29,15 +29,23 @@ class Alarms extends Page {
 customElements.define("cnc-page-alarms", Alarms);
 
 class Snapshots extends Page {
-  async show() {
-    const all = (await this.link.json("snapshots")) ?? [];
-    const name = make("input", { id: "snapshot-name", value: "snapshot", maxlength: "64", "aria-label": TEXTS.name });
-    const then = async (done) => { if (await done) this.show(); };
+  show() {
+    if (!this.list) {
+      const name = make("input", { id: "snapshot-name", value: "snapshot", maxlength: "64", "aria-label": TEXTS.name });
+      this.list = make("div");
+      this.replaceChildren(make("p", { class: "row" }, make("label", {}, TEXTS.name, " ", name), button("keep", TEXTS.keep, () => this.give("POST", "snapshot", { name: name.value }))),
+        make("p", { class: "hint" }, TEXTS.snapshot_hint), this.list);
+    }
+    this.again();
+  }
+  async give(method, rest, body) { if (await this.send(method, rest, body)) this.again(); }
+  async again() {
+    const all = await this.newest("snapshots");
+    if (!all) return;
     const rows = all.map((each) => row(each.name, String(each.cycle),
-      button(`restore-${each.name}`, TEXTS.restore, () => then(this.link.send("POST", "restore", { name: each.name }))),
-      button(`forget-${each.name}`, TEXTS.forget, () => then(this.link.send("DELETE", `snapshots/${encodeURIComponent(each.name)}`)))));
-    this.replaceChildren(make("p", { class: "row" }, make("label", {}, TEXTS.name, " ", name), button("keep", TEXTS.keep, () => then(this.link.send("POST", "snapshot", { name: name.value })))),
-      make("p", { class: "hint" }, TEXTS.snapshot_hint), rows.length ? table([TEXTS.name, TEXTS.cycle, "", ""], rows) : "");
+      button(`restore-${each.name}`, TEXTS.restore, () => this.give("POST", "restore", { name: each.name })),
+      button(`forget-${each.name}`, TEXTS.forget, () => this.give("DELETE", `snapshots/${encodeURIComponent(each.name)}`))));
+    this.list.replaceChildren(rows.length ? table([TEXTS.name, TEXTS.cycle, "", ""], rows) : "");
   }
 }
 customElements.define("cnc-page-snapshots", Snapshots);
@@ -52,8 +60,8 @@ class Connections extends Page {
     this.again();
   }
   async again() {
-    const all = await this.link.json("connections");
-    if (!all) { this.close(); return; }
+    const all = await this.newest("connections");
+    if (!all) return;
     this.doors.replaceChildren(table([TEXTS.door, TEXTS.address, TEXTS.number, TEXTS.clients],
       all.map((each) => row(each.door, each.address, String(each.clients.length), each.clients.slice(0, MOST_SHOWN).join(", ")))));
   }

@@ -6,7 +6,7 @@ const MOST = 50;
 
 export class Mdi {
   constructor(link, place) {
-    Object.assign(this, { link, past: kept.get("mdi", []), at: -1, draft: "" });
+    Object.assign(this, { link, past: kept.get("mdi", []), at: -1, draft: "", last: Promise.resolve() });
     this.text = make("textarea", { id: "mdi", rows: "1", placeholder: TEXTS.mdi, "aria-label": TEXTS.mdi, spellcheck: "false", autocapitalize: "characters" });
     this.history = make("select", { id: "history", "aria-label": TEXTS.history, onchange: () => this.recall(Number(this.history.value)) });
     this.text.addEventListener("keydown", (event) => this.key(event));
@@ -38,13 +38,20 @@ export class Mdi {
     this.text.focus();
   }
 
-  async enter() {
+  // One after the other: whoever presses twice executes it once, and nothing that was pressed before a hold begins after it.
+  enter() {
+    const stays = this.link.stays();
+    this.last = this.last.then(() => stays() && this.execute(stays));
+  }
+  async execute(stays) {
     const text = this.text.value.trimEnd();
     if (!text || !(await this.link.command("set_mdi", { text: `${text}\n` }))) return;
     this.past = [text, ...this.past.filter((each) => each !== text)].slice(0, MOST);
     kept.set("mdi", this.past);
     this.at = -1;
     this.list();
-    if (await this.link.command("cycle_start")) { this.text.value = ""; this.draft = ""; this.fit(); }
+    if (!stays() || !(await this.link.command("cycle_start")) || this.text.value.trimEnd() !== text) return;
+    this.text.value = this.draft = "";
+    this.fit();
   }
 }

@@ -16,7 +16,8 @@ import "/axes.js";
 
 const RATES = [0, 0.1, 0.5, 1, 2, 5, 10, 50], REDRAW_MS = 300, AGAIN_MS = 1000, MOST_JUMP = 60_000;
 
-const link = new Link(), channels = channelChoice(link, (number) => choose(shown, number)), path = new Path($("path"), $("views")), charts = new Charts($("charts")), axes = document.querySelector("cnc-axes"), runPage = $("page-run");
+const link = new Link(), channels = channelChoice(link, (number) => choose(shown, number)), path = new Path($("path"), $("views")), charts = new Charts($("charts")), axes = document.querySelector("cnc-axes"), runPage = $("page-run"), main = document.querySelector("main");
+let choices = 0, drawings = 0;
 let parts = null, shown = null; // the machine that is looked at, and what is built for it
 
 // ---------------------------------------------------------------- what is shown
@@ -24,12 +25,12 @@ let parts = null, shown = null; // the machine that is looked at, and what is bu
 link.addEventListener("message", ({ detail }) => {
   document.body.classList.remove("lost");
   put($("connection"), TEXTS.connected);
-  if (document.activeElement !== $("rate")) $("rate").value = String(detail.rate);
+  if (!detail.isLate && document.activeElement !== $("rate")) $("rate").value = String(detail.rate);
   for (const id of ["one_cycle", "next_event"]) $(id).hidden = detail.rate !== 0;
-  link.lease.show(detail.lease);
+  if (!detail.isLate) link.lease.show(detail.lease);
   parts.tabs.inventory(detail.inventory);
   const { breakpoints, tools, offsets, programs } = detail.inventory;
-  if (breakpoints) parts.program.setBreakpoints(breakpoints);
+  if (breakpoints) parts.program.setBreakpoints(breakpoints, detail.number);
   if (programs) parts.program.setPrograms(programs);
   else if (tools || offsets) drawPath(parts.program.name);
 });
@@ -41,6 +42,7 @@ link.addEventListener("lost", () => {
 });
 
 link.addEventListener("status", ({ detail: status }) => {
+  if (main.inert) { showStop(status.emergency === "on"); return; } // nothing is built for this machine yet
   const channel = status.channels?.[link.channel];
   put($("clock"), `${status.time_s.toFixed(1)} s`);
   if (!channel) { axes.showBoard(status); return; }
@@ -74,25 +76,29 @@ function showKeys(channel, pressed) {
   for (const key of document.querySelectorAll("[data-mode]")) key.setAttribute("aria-pressed", key.dataset.mode === channel.mode);
   parts.switches.show(channel.switches);
   parts.marks.show(channel.switches.block_delete);
+  showStop(pressed);
+}
+
+function showStop(pressed) {
   $("stop").setAttribute("aria-pressed", pressed);
   put($("stop"), pressed ? TEXTS.release : TEXTS.stop);
 }
 
 // Where the program goes, asked anew when it, a tool or an offset has changed.
 function drawPath(name) {
+  const turn = ++drawings;
   clearTimeout(drawPath.timer);
   if (!name || !link.has("path")) { path.show(null); return; }
   drawPath.timer = setTimeout(async () => {
-    const of = link.name, answer = await fetch(link.url(`path?program=${encodeURIComponent(name)}`)).catch(() => null);
-    if (link.name !== of || parts.program.selected !== name || !answer) return;
-    const told = await answer.json();
+    const answer = await fetch(link.url(`path?program=${encodeURIComponent(name)}`)).catch(() => null), told = await answer?.json().catch(() => null);
+    if (turn !== drawings || parts.program.selected !== name || !told) return;
     path.show(answer.ok ? told : null, answer.ok ? told.errors[0] ?? "" : told.detail);
   }, REDRAW_MS);
 }
 
 // ---------------------------------------------------------------- keys
 
-addEventListener("keydown", (event) => { if (!follow(event)) parts?.manual.keyDown(event); });
+addEventListener("keydown", (event) => { if (!follow(event) && !main.inert) parts?.manual.keyDown(event); });
 addEventListener("keyup", (event) => parts?.manual.keyUp(event));
 addEventListener("blur", () => parts?.manual.releaseAll());
 addEventListener("pagehide", () => parts?.manual.releaseAll());
@@ -111,7 +117,7 @@ function buildKeys() {
 function build() {
   const names = Object.keys(ownAxes(link.status)), keys = buildKeys();
   new Mdi(link, $("mdi_line"));
-  parts = { ...keys, words: new Words(link), manual: new Manual(link, $("hand"), names), program: new Program(link, () => drawPath(parts.program.selected)), tabs: new Tabs(link, $("store"), runPage) };
+  parts = { ...keys, of: shown, words: new Words(link), manual: new Manual(link, $("hand"), names), program: new Program(link, () => drawPath(parts.program.selected)), tabs: new Tabs(link, $("store"), runPage) };
 }
 
 // ---------------------------------------------------------------- what is there from the beginning
@@ -138,24 +144,28 @@ function buildTools(machines) {
 }
 
 async function choose(machine, channel = 0) {
-  const tab = machine === shown ? parts?.tabs.shown : null;
-  if (link.name && link.lease.mine && machine !== shown) await link.lease.release();
+  const turn = ++choices, isLooked = () => turn === choices, tab = parts?.of === machine ? parts.tabs.shown : null;
+  if (link.name && link.lease.mine && machine !== shown) link.lease.release();
   shown = machine;
   parts?.manual.releaseAll();
   parts?.tabs.close();
+  parts?.program.close();
+  main.inert = true; // what is still shown is of the machine before
+  showStop(false); // whoever presses it now presses that of this machine
   link.leave();
-  clearTimeout(drawPath.timer);
-  Object.assign(link, { name: machine.name, channel, parts: machine.parts, kind: machine.kind });
+  drawings++;
+  Object.assign(link, { status: null, name: machine.name, channel, parts: machine.parts, kind: machine.kind });
   document.body.classList.toggle("board", !link.has("control"));
   path.clear();
   charts.clear();
-  const status = await link.json("status"), isLooked = () => shown === machine && link.channel === channel;
+  const status = await link.json("status");
   if (!isLooked()) return; // another one has been chosen meanwhile
   link.status = status;
   if (!status) { setTimeout(() => { if (isLooked()) choose(machine, channel); }, AGAIN_MS); return; }
   build();
   if (tab) parts.tabs.open(tab);
-  link.show(link.status);
+  main.inert = false;
+  link.tell("status", status);
   link.connect();
 }
 

@@ -1,5 +1,6 @@
 // The program that is executed: its lines, the calls that led to the running one, breakpoints, where a run begins.
 import { $, button, make, put, say } from "/dom.js";
+import { Held } from "/held.js";
 import { TEXTS } from "/texts.js";
 
 const MOST_LINES = 2000, NEAR_PX = 400; // lines that are in the page at once; more come when they are scrolled to
@@ -8,7 +9,7 @@ const minutes = (s) => `${Math.floor(s / 60)}:${String(Math.floor(s % 60)).padSt
 
 export class Program {
   constructor(link, changed) {
-    Object.assign(this, { link, changed, name: "", lines: [], first: 0, running: 0, chosen: 0, breakpoints: [], selected: "", known: null });
+    Object.assign(this, { link, changed, name: "", lines: [], first: 0, running: 0, chosen: 0, breakpoints: [], selected: "", known: null, turn: 0, before: null, held: new Held(), told: { all: [], number: 0 } });
     this.holder = $("lines");
     $("steps").replaceChildren(
       button("from_line", TEXTS.from_line, () => this.fromLine()), button("breakpoint", TEXTS.breakpoint, () => this.toggleBreakpoint()),
@@ -30,6 +31,7 @@ export class Program {
     put($("name"), [...calls, block?.program ?? channel.program ?? TEXTS.no_program].join(" › "));
     put($("progress"), [block ? `${TEXTS.line} ${block.line} / ${block.lines}` : "", block && !this.lines.length ? block.text : "", timers?.cycle ? `${TEXTS.cycle_time} ${minutes(timers.cycle)}` : "",
       left_s > 0 ? `${TEXTS.left} ${minutes(left_s)}` : "", parts?.made ? `${TEXTS.parts_made} ${parts.made}` : ""].filter(Boolean).join(" · "));
+    this.takeBreakpoints();
     const wanted = block && !OVER.includes(channel.run_state) ? block.program : this.selected;
     if (wanted !== this.name) this.load(wanted);
     this.run(block && block.program === this.name ? block.line : 0);
@@ -37,19 +39,23 @@ export class Program {
   }
 
   async load(name) {
-    this.name = name;
+    const turn = ++this.turn, chosen = name === this.before ? this.chosen : 0; // a line that was chosen stays so where only texts are new
+    this.before = this.name = name;
     this.running = 0;
     this.lines = [];
     this.draw(0);
     this.choose(0);
     this.changed(name);
     if (!this.known?.has(name)) return; // blocks put in by hand, or programs that are not in the memory
-    const answer = await this.link.quietly(`programs/${encodeURIComponent(name)}`);
-    if (!answer || this.name !== name) return;
-    this.lines = (await answer.text()).replace(/\r?\n$/, "").split(/\r?\n/);
+    const text = await this.link.quietly(`programs/${encodeURIComponent(name)}`);
+    if (text === null || turn !== this.turn) return;
+    this.lines = text.replace(/\r?\n$/, "").split(/\r?\n/);
     this.draw(0);
     this.run(this.running);
+    this.choose(this.chosen || chosen);
   }
+  // What is on its way is for a machine that nobody looks at any more.
+  close() { this.turn++; }
   // The memory has these programs, some of them changed.
   setPrograms(all) {
     this.known = new Set(all.map((entry) => entry.name));
@@ -105,14 +111,23 @@ export class Program {
     if (await this.link.command("search", { line: this.chosen, calculate: true })) say(TEXTS.searched);
   }
 
-  setBreakpoints(all) { this.breakpoints = all; this.showBreakpoints(); }
+  // The machine has these; those that were set here stay until it has answered, and what it told before that is older.
+  setBreakpoints(all, number) { this.told = { all, number }; this.takeBreakpoints(); }
+  takeBreakpoints() {
+    if (this.held.holds || this.told.number < this.held.since || this.breakpoints === this.told.all) return;
+    this.breakpoints = this.told.all;
+    this.showBreakpoints();
+  }
   ownBreakpoints() { return this.breakpoints.filter((each) => each.program === this.name && each.channel === this.link.channel).map((each) => each.line); }
   showBreakpoints() {
     const marked = new Set(this.ownBreakpoints());
     [...this.holder.children].forEach((line, k) => line.classList.toggle("breakpoint", marked.has(this.first + k + 1)));
   }
   toggleBreakpoint() {
-    const there = this.ownBreakpoints(), line = this.chosen;
-    this.link.command("set_breakpoints", { program: this.name, lines: there.includes(line) ? there.filter((each) => each !== line) : [...there, line] });
+    const there = this.ownBreakpoints(), line = this.chosen, { name: program } = this, { channel } = this.link;
+    const lines = there.includes(line) ? there.filter((each) => each !== line) : [...there, line];
+    this.breakpoints = [...this.breakpoints.filter((each) => each.program !== program || each.channel !== channel), ...lines.map((each) => ({ program, channel, line: each }))];
+    this.showBreakpoints();
+    this.held.send(this.link.given("set_breakpoints", { program, lines }));
   }
 }

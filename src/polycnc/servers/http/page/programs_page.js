@@ -17,7 +17,8 @@ class Programs extends Page {
   changed(parts) { if (parts.programs && this.editor) this.list(); }
 
   build() {
-    this.names = make("select", { id: "names", "aria-label": TEXTS.programs, onchange: () => this.point() });
+    Object.assign(this, { choices: 0, coming: 0, comparing: 0 });
+    this.names = make("select", { id: "names", "aria-label": TEXTS.programs, onchange: () => { this.wanted = null; this.choices++; this.point(); } });
     this.file = make("input", { type: "file", id: "file", multiple: "", hidden: "", onchange: () => { this.bring([...this.file.files]); this.file.value = ""; } });
     this.download = make("a", { id: "download", class: "button", draggable: "true" }, TEXTS.download);
     this.download.addEventListener("dragstart", (event) => event.dataTransfer.setData("DownloadURL", `text/plain:${this.download.download}:${this.download.href}`));
@@ -53,9 +54,12 @@ class Programs extends Page {
     this.download.download = name.includes(".") ? name : `${name}.nc`;
   }
 
-  async edit() {
-    const answer = this.names.value && (await this.link.ask(at(this.names.value)));
-    if (answer) this.put(this.names.value, await answer.text());
+  edit() { if (this.names.value) this.bringText(this.names.value, this.link.text(at(this.names.value))); }
+  // Put a text that is on its way into the editor, unless another was asked for, or somebody has written there meanwhile.
+  async bringText(name, coming) {
+    const turn = ++this.coming, before = this.editor.value, named = this.name.value, text = await coming;
+    if (turn !== this.coming || (text ?? null) === null) return;
+    if (this.editor.value === before && this.name.value === named) this.put(name, text); else say(TEXTS.left_as_written(name));
   }
   put(name, text) {
     this.name.value = name;
@@ -66,8 +70,10 @@ class Programs extends Page {
   async save() {
     const name = this.name.value.trim();
     if (!name) { say(TEXTS.name_it); this.name.focus(); return; }
-    if (!(await this.link.send("PUT", at(name), this.editor.value))) return;
+    const { choices } = this;
+    if (!(await this.send("PUT", at(name), this.editor.value))) return;
     say(TEXTS.saved(name));
+    if (choices !== this.choices) return; // another one was chosen meanwhile
     this.wanted = name;
     this.list();
   }
@@ -78,18 +84,18 @@ class Programs extends Page {
     clearTimeout(this.asking);
     ask(TEXTS.remove, "");
     if (!name) return;
-    if (sure) { this.link.send("DELETE", at(name)); return; }
+    if (sure) { this.send("DELETE", at(name)); return; }
     ask(TEXTS.sure(name), name);
     this.asking = setTimeout(() => ask(TEXTS.remove, ""), ASK_MS);
   }
 
   // One file is put into the editor; several go into the memory, where none is replaced.
   async bring(files) {
-    if (files.length === 1) { this.put(nameOf(files[0]), await files[0].text()); return; }
+    if (files.length === 1) { await this.bringText(nameOf(files[0]), files[0].text()); return; }
     const there = new Set((this.parts.programs ?? []).map((entry) => entry.name)), left = [];
     let count = 0;
     for (const file of files.slice(0, MOST_FILES)) {
-      if (there.has(nameOf(file)) || !(await this.link.send("PUT", at(nameOf(file)), await file.text()))) left.push(file.name); else count++;
+      if (there.has(nameOf(file)) || !(await this.send("PUT", at(nameOf(file)), await file.text()))) left.push(file.name); else count++;
     }
     say([TEXTS.brought(count), left.length ? TEXTS.left_out(left.join(", ")) : ""].join(" "));
   }
@@ -119,9 +125,9 @@ class Programs extends Page {
 
   // What the editor has differs from the chosen program of the memory like this.
   async compare() {
-    const name = this.names.value, answer = name && (await this.link.ask(at(name)));
-    if (!answer) return;
-    const all = difference(await answer.text(), this.editor.value), changes = all?.filter((each) => each.kind !== "same").length;
+    const name = this.names.value, turn = ++this.comparing, text = name && (await this.link.text(at(name)));
+    if (!name || (text ?? null) === null || turn !== this.comparing) return;
+    const all = difference(text, this.editor.value), changes = all?.filter((each) => each.kind !== "same").length;
     const near = all?.map((each, k) => all.slice(Math.max(0, k - NEAR), k + NEAR + 1).some((other) => other.kind !== "same"));
     const rows = (all ?? []).flatMap((each, k) => (near[k] ? [make("p", { class: each.kind }, `${String(each.a || "").padStart(5)} ${String(each.b || "").padStart(5)} ${{ same: " ", gone: "−", new: "+" }[each.kind]} ${each.text}`)]
       : near[k - 1] ? [make("p", { class: "gap" }, "⋯")] : []));

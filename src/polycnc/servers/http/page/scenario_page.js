@@ -19,32 +19,43 @@ class ScenarioPage extends Page {
     this.steps = make("div");
     this.past = make("div");
     this.editor = make("cnc-editor", { for: "scenario-text", label: TEXTS.scenario_text });
+    this.follow = button("scenario-put", TEXTS.scenario_put, () => this.begin());
+    this.follow.disabled = true;
     this.wrong = make("p", { id: "scenario-wrong", role: "status" });
     this.replaceChildren(
       make("p", { class: "row" }, button("scenario-start", TEXTS.scenario_start, () => this.give("start")), button("scenario-stop", TEXTS.scenario_stop, () => this.give("stop")), this.state),
       this.steps, make("h3", {}, TEXTS.happened), this.past, make("h3", {}, TEXTS.scenario_text), make("p", { class: "hint" }, TEXTS.scenario_hint), this.editor,
-      make("p", { class: "row after" }, button("scenario-put", TEXTS.scenario_put, () => this.begin())), this.wrong);
+      make("p", { class: "row after" }, this.follow), this.wrong);
+    this.editor.text.readOnly = true; // nothing is typed before what is there
     this.again();
   }
 
-  async give(what) { this.tell(await this.link.json("scenario", { method: "POST", body: JSON.stringify({ do: what }) })); }
+  async give(what) {
+    const told = await this.link.json("scenario", { method: "POST", body: JSON.stringify({ do: what }) });
+    if (!told) return;
+    this.answered();
+    this.tell(told);
+  }
   async begin() {
-    const answer = await fetch(this.link.url("scenario"), { method: "PUT", body: this.editor.value, headers: { "polycnc-key": this.link.lease.key } }).catch(() => null);
-    const told = answer ? await answer.json() : { detail: TEXTS.lost, hint: "" };
+    const text = this.editor.value, turn = (this.begun = (this.begun ?? 0) + 1);
+    const answer = await fetch(this.link.url("scenario"), { method: "PUT", body: text, headers: { "polycnc-key": this.link.lease.key } }).catch(() => null);
+    const told = (await answer?.json().catch(() => null)) ?? { detail: TEXTS.lost, hint: "" };
+    if (turn !== this.begun) return; // another text was given meanwhile
     put(this.wrong, answer?.ok ? "" : `${told.detail}\n${told.hint}`);
     const places = (told.errors ?? []).map((each) => /:(\d+):(\d+): (.*)/s.exec(each)).filter(Boolean);
-    this.editor.show(places.map(([, line, column, text]) => ({ line: Number(line), column: Number(column), text })));
-    if (answer?.ok) this.tell(told);
+    if (this.editor.value === text) this.editor.show(places.map(([, line, column, said]) => ({ line: Number(line), column: Number(column), text: said })));
+    if (!answer?.ok || !told.steps) return;
+    this.answered();
+    this.tell(told);
   }
 
   async again() {
-    const { text } = this.editor;
-    text.readOnly = !this.loaded; // nothing is typed before what is there
-    const told = await this.link.json("scenario");
-    text.readOnly = false;
-    if (!told) { this.close(); return; }
-    if (!this.loaded && !this.editor.value) this.editor.value = told.source || TEXTS.scenario_example;
-    this.loaded = true;
+    const told = await this.newest("scenario");
+    if (!told) return;
+    if (this.follow.disabled) {
+      this.editor.value = told.source || TEXTS.scenario_example;
+      this.editor.text.readOnly = this.follow.disabled = false;
+    }
     this.tell(told);
   }
   tell(told) {

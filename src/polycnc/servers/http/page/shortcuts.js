@@ -27,7 +27,7 @@ const isText = (element) => element.matches("input:not([type=range]), textarea, 
 export function follow(event) {
   const found = SHORTCUTS.find(({ keys }) => (keys === "?" ? event.key === "?" && !isText(event.target) : event.altKey && !event.ctrlKey && event.code === code(keys)));
   const element = found && $(found.press ?? found.focus);
-  if (!element) return false;
+  if (!element || element.closest("[inert]")) return false;
   event.preventDefault();
   if (found.focus) element.focus();
   else if (!found.only || element.getAttribute("aria-pressed") === found.only) element.click();

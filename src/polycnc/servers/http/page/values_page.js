@@ -10,7 +10,7 @@ const text = (value) => (value === null || value === undefined ? "" : String(val
 class Values extends Page {
   cells(part, each) {
     const cell = make("span", { class: "values" });
-    const set = (value) => this.link.send("PUT", `${part}/${encodeURIComponent(each.name)}`, { value });
+    const set = (value) => this.send("PUT", `${part}/${encodeURIComponent(each.name)}`, { value });
     const one = (value, label, wrap) => {
       if (!each.writable) return make("span", {}, text(value), " ");
       if (typeof value === "boolean" || each.choices.length) return this.choice(value, label, each.choices.length ? each.choices : ["true", "false"], (found) => set(wrap(found)));
@@ -24,8 +24,7 @@ class Values extends Page {
   choice(value, label, words, set) {
     const made = make("select", { "aria-label": label, class: "cell" }, ...words.map((word) => make("option", {}, word)));
     made.value = String(value);
-    made.addEventListener("change", async () => { made.classList.toggle("refused", !(await set(parse(made.value)))); });
-    return made;
+    return this.marked(made, (found) => set(parse(found)));
   }
   rows(part, all) {
     return table([TEXTS.number, TEXTS.value, TEXTS.meaning], all.slice(0, MOST_ROWS).map((each) => row(each.name, this.cells(part, each), each.what)));
@@ -35,16 +34,17 @@ class Values extends Page {
 class Parameters extends Values {
   static needs = "parameters";
   async show() {
-    const all = await this.link.json("parameters");
-    if (!all) { this.replaceChildren(TEXTS.none); return; }
-    const place = make("div"), filter = make("input", { id: "filter", type: "search", placeholder: TEXTS.filter, "aria-label": TEXTS.filter });
-    const find = () => {
-      const word = filter.value.toLowerCase(), found = all.filter((each) => `${each.name} ${each.what}`.toLowerCase().includes(word));
-      place.replaceChildren(this.rows("parameters", found), found.length > MOST_ROWS ? make("p", { class: "hint" }, TEXTS.more(found.length - MOST_ROWS)) : "");
-    };
-    filter.addEventListener("input", find);
-    this.replaceChildren(filter, place);
-    find();
+    if (!this.filter) {
+      this.filter = make("input", { id: "filter", type: "search", placeholder: TEXTS.filter, "aria-label": TEXTS.filter, oninput: () => this.find() });
+      this.place = make("div");
+      this.replaceChildren(this.filter, this.place);
+    }
+    this.all = (await this.newest("parameters")) ?? this.all;
+    if (!this.writes(this.place)) this.find();
+  }
+  find() {
+    const word = this.filter.value.toLowerCase(), found = (this.all ?? []).filter((each) => `${each.name} ${each.what}`.toLowerCase().includes(word));
+    this.place.replaceChildren(this.all ? this.rows("parameters", found) : "", found.length > MOST_ROWS ? make("p", { class: "hint" }, TEXTS.more(found.length - MOST_ROWS)) : "");
   }
 }
 customElements.define("cnc-page-parameters", Parameters);
@@ -63,9 +63,8 @@ class Watched extends Values {
   get names() { return kept.get(`${this.name}-${this.link.name}`, this.constructor.usual(this.link.kind)); }
   async again() {
     if (this.list.contains(document.activeElement)) return; // somebody writes into it
-    const part = this.constructor.needs, all = await this.link.json(`${part}?names=${encodeURIComponent(this.names)}`);
-    if (!all) { this.close(); return; }
-    if (!this.list.contains(document.activeElement)) this.list.replaceChildren(all.length ? this.rows(part, all) : TEXTS.none, all.length > MOST_ROWS ? make("p", { class: "hint" }, TEXTS.more(all.length - MOST_ROWS)) : "");
+    const part = this.constructor.needs, all = await this.newest(`${part}?names=${encodeURIComponent(this.names)}`);
+    if (all && !this.list.contains(document.activeElement)) this.list.replaceChildren(all.length ? this.rows(part, all) : TEXTS.none, all.length > MOST_ROWS ? make("p", { class: "hint" }, TEXTS.more(all.length - MOST_ROWS)) : "");
   }
 }
 class Variables extends Watched {

@@ -19,11 +19,10 @@ class Screen extends Page {
     this.replaceChildren(this.picture, this.keys, make("p", { class: "hint" }, TEXTS.screen_hint));
     this.again();
   }
-  async press(key) { if (await this.link.send("POST", "screen", { key })) this.again(); }
+  async press(key) { if (await this.send("POST", "screen", { key })) this.again(); }
   async again() {
-    const told = await this.link.json("screen"), text = JSON.stringify(told);
-    if (!told) { this.close(); return; }
-    if (this.keys.dataset.told === text && this.picture.src) return;
+    const told = await this.newest("screen"), text = JSON.stringify(told);
+    if (!told || (this.keys.dataset.told === text && this.picture.src)) return;
     this.keys.dataset.told = text;
     this.picture.src = `${this.link.url("screen.svg")}?at=${performance.now()}`;
     this.picture.alt = told.lines.map((line) => line.trimEnd()).filter(Boolean).join("\n");
@@ -41,17 +40,17 @@ class Tasks extends Page {
     const source = make("textarea", { id: "source", "aria-label": TEXTS.source, spellcheck: "false", placeholder: TEXTS.source });
     const task = make("select", { id: "task", "aria-label": TEXTS.task }, ...[0, 1, 2, 3].map((number) => make("option", {}, String(number))));
     this.list = make("div");
-    const load = async () => { if (await this.link.send("PUT", `tasks/${task.value}`, source.value)) this.again(); };
+    const load = async () => { if (await this.send("PUT", `tasks/${task.value}`, source.value)) this.again(); };
     this.replaceChildren(this.list, make("p", { class: "row" }, task, button("load-task", TEXTS.load, load)), source);
     this.again();
   }
   async again() {
     if (this.list.contains(document.activeElement)) return;
-    const all = await this.link.json("tasks");
-    if (!all) { this.close(); return; }
+    const all = await this.newest("tasks");
+    if (!all || this.list.contains(document.activeElement)) return; // a key that is being pressed stays
     const give = (number, what) => button(`${what}-${number}`, TEXTS.tasks_do[what], async (event) => {
       event.target.blur();
-      if (await this.link.send("POST", `tasks/${number}`, { do: what })) this.again();
+      if (await this.send("POST", `tasks/${number}`, { do: what })) this.again();
     });
     const rows = all.map((each) => row(String(each.task), each.state, each.line ? String(each.line) : "",
       each.error_number ? `${each.error_number} ${each.error} (${TEXTS.line} ${each.error_line})` : "", give(each.task, "start"), give(each.task, "stop"), give(each.task, "continue")));

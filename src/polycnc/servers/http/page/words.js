@@ -12,7 +12,7 @@ export class Words {
     $("fst").replaceChildren(make("b", { id: "tool" }), ...["programmed", "commanded", "actual"].map((key) => make("i", {}, TEXTS[key])), ...figures("F", 0), ...figures("S", 3));
     $("overrides").replaceChildren(...Object.entries(OVERRIDES).map(([name, range]) => make("label", {}, TEXTS[name],
       make("input", { type: "range", id: `override-${name}`, min: 0, value: 100, ...range,
-        onchange: ({ target: { value } }) => this.held[name].send(() => link.command("set_overrides", { [name]: Number(value) / 100 })),
+        onchange: ({ target: { value } }) => this.held[name].send(link.given("set_overrides", { [name]: Number(value) / 100 })),
         oninput: (event) => put($(`override-${name}-is`), `${event.target.value} %`) }),
       make("output", { id: `override-${name}-is` }))));
   }
