@@ -25,9 +25,19 @@ import numpy as np
 import numpy.typing as npt
 
 from polycnc.errors import PolycncError
-from polycnc.post import ControlFile, MacroRun, load_control, parse_control
+from polycnc.post import (
+    BlockMap,
+    ControlFile,
+    MacroRun,
+    load_control,
+    parse_control,
+    parse_tool_path,
+    post_program,
+    program_file,
+)
 
 RECORDED = Path(__file__).resolve().parents[1] / "golden" / "post" / "scenes"
+_CODECS = {"utf-8": "utf-8", "ascii": "ascii", "shift-jis": "cp932"}
 _MACROS = ("PATH_START", "RAPID", "PATH_END", "LINEAR")
 _ROW = ("X", "Y", "Z", "STARTX", "STARTY", "STARTZ")
 _STEPS = np.array([[1.25, -2.5, 0.0], [1.25, -2.5, 0.75]])
@@ -82,6 +92,8 @@ def _outcome(case: Case, folder: Path) -> list[str]:
     words = {name: settings.pop(name) for name in list(settings) if name.isupper()}
     names: tuple[str, ...]
     try:
+        if name := settings.pop("posted", ""):
+            return _posted("\n".join(case.lines), _control({}, {"control": name, **settings}), folder)
         if settings.pop("whole", False):
             names = ("LINEAR",)
             control = _saved("\n".join(case.lines), settings.pop("saved", "utf-8"), folder)
@@ -98,12 +110,20 @@ def _outcome(case: Case, folder: Path) -> list[str]:
 
 def _control(macros: Mapping[str, str], settings: dict[str, Any]) -> ControlFile:
     text = (RECORDED / f"{settings.pop('control', 'mill')}.toml").read_text(encoding="utf-8")
+    if origin := settings.pop("origin", None):
+        settings["machining_origin"] = dict(zip("XYZ", origin, strict=True))
     for key, value in settings.items():
         text = re.sub(rf"(?m)^{key} = .*\n", "", text, count=1)
-        line = f"{key} = {json.dumps(value, ensure_ascii=False)}"
+        line = f"{key} = {_toml(value)}"
         text = text.replace("[parameters]\n", f"[parameters]\n{line}\n", 1)
     body = "".join(f"{name} = '''\n{lines}'''\n" for name, lines in macros.items())
     return parse_control(f"{text}\n{body}", "scene.toml")
+
+
+def _toml(value: object) -> str:
+    if isinstance(value, dict):
+        return f"{{ {', '.join(f'{key} = {_toml(each)}' for key, each in value.items())} }}"
+    return json.dumps(value, ensure_ascii=False)
 
 
 def _saved(text: str, encoding: str, folder: Path) -> ControlFile:
@@ -111,6 +131,28 @@ def _saved(text: str, encoding: str, folder: Path) -> ControlFile:
     path = folder / "scene.toml"
     path.write_bytes(text.encode(encoding))
     return load_control(path)
+
+
+def _posted(path: str, control: ControlFile, folder: Path) -> list[str]:
+    """Post a tool path into a file; return its blocks with the lines that they come from, and what is remarked."""
+    file, codec, blocks = folder / "scene.nc", _CODECS[control.parameters.encoding], BlockMap()
+    file.unlink(missing_ok=True)
+    try:
+        with program_file(file, control.parameters) as out:
+            summary = post_program(parse_tool_path(path, "scene.cl"), control, out.write, block_map=blocks)
+    except (PolycncError, UnicodeEncodeError) as error:
+        assert not file.exists()
+        return _error(error)
+    found = []
+    at = 0
+    for number, block in enumerate(file.read_bytes().decode(codec).removesuffix("\n").split("\n"), 1):
+        while blocks.last_block[at] < number:
+            at += 1
+        found.append(f"  |{blocks.line[at] or 'end'}: {block}|".replace("\r", "\\r"))
+    lengths = f"{summary.feed_mm:.3f} mm by feed, {summary.rapid_mm:.3f} mm by rapid"
+    counts = f"{summary.arcs} arcs, {summary.holes} holes, {summary.tools} tools"
+    found.append(f"  . {summary.records} records, {summary.blocks} blocks, {lengths}, {counts}")
+    return found + [f"  ! {remark.line}: {remark.text}" for remark in summary.remarks]
 
 
 def _way(
@@ -170,6 +212,6 @@ def _at_once(run: MacroRun, rows: Rows, given: Mapping[str, Any]) -> str | None:
     return text
 
 
-def _error(error: PolycncError) -> list[str]:
+def _error(error: Exception) -> list[str]:
     text = re.sub(r"[^\s']*scene\.toml", "scene.toml", str(error))
     return [f"  ! {line}".rstrip() for line in text.splitlines()]
