@@ -44,8 +44,8 @@ SCENES = {
     "sec.parameter macro.elements section.nc_macro macro.line_is_block",
     "files": "file.output_control_file section.nc_macro sec.nc_code sec.g_code sec.m_code sec.parameter "
     "sec.function_var code.search_key macro.line_is_block order.sort concept.machining_origin init.xyz string.literal",
-    "programs": f"{_MARKS} string.special_chars file.output_control_file section.nc_macro word.TOOLCHANGE word.T word.F "
-    "word.X word.Y word.Z word.STARTOFLINE word.ENDOFLINE expr.string_value seq.output seq.option2 "
+    "programs": f"{_MARKS} string.special_chars file.output_control_file section.nc_macro word.TOOLCHANGE word.T "
+    "word.F word.X word.Y word.Z word.STARTOFLINE word.ENDOFLINE expr.string_value seq.output seq.option2 "
     "block.sequence_number init.key init.xyz init.value macro.tool_change concept.multi_path "
     "concept.machining_origin sec.nc_code sec.g_code sec.m_code sec.parameter sec.function_var expr.newvar "
     "if.statement op.div",
