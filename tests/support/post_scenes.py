@@ -73,6 +73,12 @@ def read_cases(text: str) -> Iterator[Case]:
     yield case
 
 
+def lines_of(scene: str) -> list[str]:
+    """Return the lines of all cases of a scene."""
+    text = (RECORDED / f"{scene}.txt").read_text(encoding="utf-8")
+    return ["\n".join(case.lines) for case in read_cases(text)]
+
+
 def played(scene: str, folder: Path) -> str:
     """Return a scene with what its cases write now."""
     found: list[str] = []
