@@ -6,7 +6,7 @@ encoding, all else are parameters), and after `  > ` the lines; `---` begins the
 written under it:
 
     |block|     what the macros write, called one after the other, the last one as LINEAR
-    +|block|    what the last one writes for two more moves: one by one, along a path and many at once alike
+    +|block|    what the last one writes for two more moves with another feed: one by one, along a path, at once alike
     =|block|    what shows the state that they leave: STOP of the control file
     ! line      an error, as a user reads it
 """
@@ -44,7 +44,8 @@ _STEPS = np.array([[1.25, -2.5, 0.0], [1.25, -2.5, 0.75]])
 _OUTPUT = ("  |", "  +", "  =", "  !", "  .")
 
 Rows = npt.NDArray[np.float64]
-Moves = Callable[[MacroRun, Rows, Mapping[str, Any]], str | None]
+Feed = tuple[float, float]
+Moves = Callable[[MacroRun, Rows, Feed], str | None]
 
 
 @dataclass
@@ -179,13 +180,13 @@ def _way(
         except PolycncError as error:
             found += _error(error)
     sign = "+"
-    given = dict.fromkeys(("X", "Y", "Z", "F", "FEEDMODE"), 0.0) | given
+    given = dict.fromkeys(("X", "Y", "Z", "F"), 0.0) | given
     first = np.array([float(given[name]) for name in "XYZ"])
     rows = np.hstack([first + _STEPS, first - _STEPS])
     if not any(map(control.names, _ROW[3:])):
         rows = rows[:, :3]
     try:
-        text = more(run, rows, given)
+        text = more(run, rows, (float(given["F"]) + 12.5, 95.0))
         if text is None:
             return None
         found += [f"  +|{block}|" for block in text.splitlines()]
@@ -196,25 +197,27 @@ def _way(
     return found
 
 
-def _one_by_one(run: MacroRun, rows: Rows, given: Mapping[str, Any]) -> str:
+def _one_by_one(run: MacroRun, rows: Rows, feed: Feed) -> str:
     for row in rows.tolist():
-        words = dict(zip(_ROW, row, strict=False))
-        run.call("LINEAR", words | {"F": given["F"], "FEEDMODE": given["FEEDMODE"]})
+        run.call(
+            "LINEAR", dict(zip(_ROW, row, strict=False)) | dict(zip(("F", "FEEDMODE"), feed, strict=True))
+        )
     return ""
 
 
-def _along(run: MacroRun, rows: Rows, given: Mapping[str, Any]) -> str:
-    for _ in run.call_along(rows.tolist(), float(given["F"]), float(given["FEEDMODE"])):
+def _along(run: MacroRun, rows: Rows, feed: Feed) -> str:
+    for _ in run.call_along(rows.tolist(), *feed):
         pass
     return ""
 
 
-def _at_once(run: MacroRun, rows: Rows, given: Mapping[str, Any]) -> str | None:
+def _at_once(run: MacroRun, rows: Rows, feed: Feed) -> str | None:
+    _along(run, rows[:1], feed)  # the first makes modal what is
     steady = run.rows()
     if steady is None:
         return None
-    text, blocks, done = run.write_rows(steady, rows, np.zeros(len(rows), np.int64))
-    assert (text.count("\n"), done) == (blocks, len(rows))
+    text, blocks, done = run.write_rows(steady, rows[1:], np.zeros(1, np.int64))
+    assert (text.count("\n"), done) == (blocks, 1)
     return text
 
 

@@ -41,7 +41,7 @@ SCENES = {
     "refusals": "string.special_chars string.dquote string.squote code.output code.star code.minus code.search_key "
     "code.combined word.expand word.reserved word.function_var seq.suppress seq.output expr.assign op.assign "
     "expr.number expr.string_value word.STARTOFLINE word.ENDOFLINE op.plus op.minus op.mul op.div init.key init.value "
-    "if.statement if.else_if if.else if.endif if.nesting if.condition if.operands logic.limit logic.and "
+    "if.statement if.else_if if.else if.endif if.nesting if.condition if.operands logic.limit logic.and logic.or "
     "sec.parameter macro.elements section.nc_macro macro.line_is_block",
     "files": "file.output_control_file section.nc_macro sec.nc_code sec.g_code sec.m_code sec.parameter "
     "sec.function_var code.search_key macro.line_is_block order.sort concept.machining_origin init.xyz string.literal",
