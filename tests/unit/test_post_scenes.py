@@ -20,7 +20,7 @@ _MARKS = (
 SCENES = {
     "elements": f"{_MARKS} string.special_chars string.order_default macro.elements section.nc_macro word.TOOLCHANGE "
     "word.T seq.suppress seq.output seq.option2 seq.conflict block.sequence_number order.sort word.OUTPUTORDER "
-    "sec.nc_code sec.g_code sec.m_code expr.assign init.key init.xyz init.value",
+    "sec.nc_code sec.g_code sec.m_code expr.assign init.key init.xyz init.value expr.case",
     "orders": "string.order_default string.squote order.written order.sort word.OUTPUTORDER word.STARTOFLINE "
     "word.ENDOFLINE expr.string_value sec.nc_code sec.parameter block.sequence_number block.empty string.dquote "
     "macro.line_is_block expr.case op.assign",
