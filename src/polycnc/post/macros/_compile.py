@@ -14,7 +14,7 @@ from typing import TypeAlias
 from polycnc.language import Emitter, Flaw, Traced
 from polycnc.post.macros._blocks import Piece, by_order, escaped, is_empty_test, joined, text_follows
 from polycnc.post.macros._elements import Assignment, Code, Element, Initialisation, Numbering, Text, Word
-from polycnc.post.macros._expression import Condition, Name, python_condition, python_value
+from polycnc.post.macros._expression import Condition, Expression, Name, python_condition, python_value
 from polycnc.post.macros._format import NumberFormat
 from polycnc.post.macros._macro import If, Line, Statement, elements_of, is_blank
 from polycnc.post.macros._symbols import (
@@ -258,10 +258,14 @@ class _Writer:
                 f"{name} is set by events, not by macros",
                 "use another name, or write strict = true in the parameters if the name is your own",
             )
-        self.out.place = (self.out.place[0], element.value.at)
-        self.out.put(f"value = {python_value(element.value, self._value)}")
+        self._set(name, element.value)
+
+    def _set(self, name: str, expression: Expression) -> None:
+        """Write the assignment of a number, which is finite."""
+        self.out.place = (self.out.place[0], expression.at)
+        self.out.put(f"value = {python_value(expression, self._value)}")
         self.out.put("if value - value: raise OverflowError")
-        self.out.put(f"{symbols.use(name)} = value")
+        self.out.put(f"{self._symbols.use(name)} = value")
 
     def _initialise(self, element: Initialisation) -> None:
         symbols = self._symbols
@@ -275,8 +279,7 @@ class _Writer:
             known = [*symbols.codes, *symbols.variables]
             raise self._unknown(element.at, "code or function variable", element.key, known)
         if element.value is not None:
-            self.out.place = (self.out.place[0], element.value.at)
-            self.out.put(f"{symbols.use(variable.key)} = {python_value(element.value, self._value)}")
+            self._set(variable.key, element.value)
         elif variable.origin is not None:
             self.out.put(f"{symbols.use(variable.key)} = {variable.origin!r}")
         self.out.put(f"last[{variable.memory}] = texts[{variable.memory}] = None")

@@ -138,17 +138,21 @@ def _shipped(name: str) -> ControlFile:
 
 
 def _decoded(data: bytes, file: str) -> str:
-    try:
-        return data.decode("utf-8-sig")
-    except UnicodeDecodeError as utf_8:
+    found = 0
+    for codec in ("utf-8-sig", "cp932"):
         try:
-            return data.decode("cp932")
-        except UnicodeDecodeError as shift_jis:
-            line = data.count(b"\n", 0, max(utf_8.start, shift_jis.start)) + 1
-            raise ConfigurationError(
-                f"'{file}' is neither UTF-8 nor Shift-JIS text: line {line} has bytes of neither",
-                hint="save the file as UTF-8",
-            ) from None
+            text = data.decode(codec)
+        except UnicodeDecodeError as error:
+            found = max(found, error.start)
+        else:
+            if "\0" not in text:
+                return text
+            found = max(found, data.index(0))  # UTF-16, of which each byte may be one of Shift-JIS
+    line = data.count(b"\n", 0, found) + 1
+    raise ConfigurationError(
+        f"'{file}' is neither UTF-8 nor Shift-JIS text: line {line} has bytes of neither",
+        hint="save the file as UTF-8",
+    )
 
 
 def _in_english(data: dict[str, Any], locator: Locator) -> tuple[dict[str, Any], Locator]:

@@ -167,7 +167,7 @@ def _assignment(line: str, at: int) -> tuple[Element, int]:
     if line.startswith('"', target.end()):
         text = _TEXT_VALUE.match(line, target.end())
         if text is None:
-            raise Flaw(target.end(), "the text is not closed by a quote and >", 'write <STARTOFLINE="/">')
+            raise Flaw(target.end(), "the text is not closed by a quote and >", f'write <{name}="text">')
         return Assignment(at, name, text[1]), text.end()
     if name in LINE_TEXTS:
         raise Flaw(target.end(), f"{name} takes a text in double quotes", f'write <{name}="text">')

@@ -215,7 +215,7 @@ def _meaning(error: Exception) -> tuple[str, str]:
         case OverflowError():
             return "the number is not finite", "look at what the expression is made of"
         case _:
-            return f"a function has no value there ({error})", "test its argument with IF before"
+            return "a function has no value there", "test its argument with IF before"
 
 
 def _text(name: str, text: Value) -> str:

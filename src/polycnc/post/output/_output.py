@@ -10,6 +10,7 @@ import numpy.typing as npt
 
 from polycnc.errors import ProgramError
 from polycnc.post.macros._control_file import ControlFile
+from polycnc.post.macros._format import decimal
 from polycnc.post.tool_path._tool_path import ToolPath
 from polycnc.units import MM_PER_INCH
 
@@ -118,7 +119,7 @@ class Output:
         """Return a number as the control writes it after an address, plainly if it has no such address."""
         if variable in self.control.variables:
             return self._run.formatted(variable, value)
-        return f"{variable}{value:g}"
+        return f"{variable}{decimal(value)}"
 
     def remark(self, line: int, text: str) -> None:
         """Remark something about a line of the tool path."""

@@ -172,7 +172,7 @@ class _Driver:
         self._path_number = 0
         self._started = self._in_path = False
         self._shape = ToolShape(0, "", 0.0, 0.0)
-        self._length_said = False
+        self._said = ToolShape(0)  # of the tool that comes next
         self._tool_number = 0
         self._turning: Spindle | None = None
         # With the number of tool changes before them: what came before the last one must be said again.
@@ -328,14 +328,9 @@ class _Driver:
                 self.output.state("INSERT", record.line, {"COMMENT": record.text})
 
     def _tool_shape(self, record: ToolShape) -> None:
-        old = self._shape
-        self._length_said |= record.length is not None
-        self._shape = ToolShape(
-            record.line,
-            old.name if record.name is None else _plain(record.name),
-            old.diameter if record.diameter is None else record.diameter,
-            old.length if record.length is None else record.length,
-        )
+        name = None if record.name is None else _plain(record.name)
+        new = ToolShape(record.line, name, record.diameter, record.length)
+        self._shape, self._said = _over(self._shape, new), _over(self._said, new)
 
     def _tool(self, record: Tool) -> None:
         self._take(record)
@@ -346,9 +341,11 @@ class _Driver:
         self._tool_shape(ToolShape(record.line, record.name, None, record.length))
         self.tools += 1
         before, self._tool_number = float(self._tool_number), record.number
-        # A length that was said of an earlier tool is not that of this one.
-        self.motion.tool_length_mm = self._shape.length if self._length_said else None
-        self._length_said = False
+        # What was said of an earlier tool does not hold for this one, nor the length of one that was changed since.
+        if float(record.number) != before:
+            self._shape = self._said
+        self.motion.tool_length_mm = self._said.length
+        self._said = ToolShape(record.line)
         self._keep_coming()
         self.motion.first(2.0)
         number = float(record.number)
@@ -567,6 +564,16 @@ class _Driver:
     def _stop(self, record: Stop) -> None:
         self.drilling.close()
         self.output.state("OPTIONAL_STOP" if record.optional else "STOP", record.line)
+
+
+def _over(old: ToolShape, new: ToolShape) -> ToolShape:
+    """Return the shape of a tool of which something more was said."""
+    return ToolShape(
+        new.line,
+        old.name if new.name is None else new.name,
+        old.diameter if new.diameter is None else new.diameter,
+        old.length if new.length is None else new.length,
+    )
 
 
 def _printable(text: str) -> str:
