@@ -30,6 +30,7 @@ MACHINE = (
 _OURS = re.compile(r"cpl\.store|machine\.toml|main\.npg|.*\.l$|.*-(wal|shm|journal)$|\.")
 _SINKS = {"%": "#I{}%", "R": "#R{}", "!": "#D{}!", "?": "#B{}?", "$": "#S{}$"}
 _CYCLES = 3000
+_TOGETHER = 9
 _FONT = (0, 9, 0, 0, 0)
 _COLOURS = (2, 0)
 
@@ -40,8 +41,9 @@ def shown(name: str, value: object) -> str:
         return "NUL"
     if isinstance(value, bool):
         return str(value).upper()
-    if isinstance(value, float) and name[-1] != "!":
-        return str(np.float32(value))
+    if isinstance(value, float):
+        digits = f"{value:.15g}" if name[-1] == "!" else str(np.float32(value))
+        return digits if re.search("[.e]", digits) else f"{digits}.0"
     if isinstance(value, str):
         return '"' + value.encode("unicode_escape").decode().replace('"', '\\"') + '"'
     if isinstance(value, dict):
@@ -132,8 +134,9 @@ class Bench:
         numbers = {columns[-1]: columns[0] for columns in entries[Tab.ERRORS]}
         for alarm in self.pnc.status().alarms:
             place, _, what = alarm.text.partition(": ")
-            number = numbers.get(what, "-")
-            yield f"error {place.removeprefix('main.npg:')}" + f" {number}" * (number != "0") + f" {what}"
+            number = numbers.get(re.sub(r" \[\d+]$", "", what), "?")
+            told = [place.removeprefix("main.npg:"), *([number] if number != "0" else ()), what]
+            yield f"error {' '.join(told)}"
         yield from (f"warning {columns[0]} {columns[-1]}" for columns in entries[Tab.WARNINGS])
 
     def _messages(self) -> Iterator[str]:
@@ -178,8 +181,12 @@ class Bench:
 
     # ------------------------------------------------------------------ tables
 
-    def evaluate(self, before: list[str], expressions: list[str]) -> list[str]:
-        """Return what each expression is as each type, or why it is not."""
+    def evaluate(self, before: list[str], expressions: list[str]) -> Iterator[str]:
+        """Yield what each expression is as each type, or why it is not."""
+        for first in range(0, len(expressions), _TOGETHER):
+            yield from self._evaluate(before, expressions[first : first + _TOGETHER])
+
+    def _evaluate(self, before: list[str], expressions: list[str]) -> list[str]:
         found: dict[tuple[int, str], str] = {}
         lines = [
             (place, sink, f"{name.format(place)}={expression}")
@@ -303,7 +310,7 @@ def _section(section: str, bench: Bench) -> str:
     before = [line for line in lines[1:] if not line.startswith(mark) and line]
     bodies = [item[2:].strip() for item in items]
     if kind == "=?":
-        found = bench.evaluate(before, bodies)
+        found = list(bench.evaluate(before, bodies))
     else:
         found = [
             " ; ".join(bench.execute(numbered([*before, *body.split(" / ")], 1, 1))) or "nothing" for body in bodies
