@@ -58,9 +58,11 @@ def _index(key: object) -> str:
 
 
 def numbered(lines: Iterable[str], first: int = 10, step: int = 10) -> str:
-    """Return a program whose lines have numbers where they have none."""
+    """Return a program whose lines have numbers where they have none, or a bar that says so."""
     return "".join(
-        f"{line}\n" if re.match(r"N?[0-9]|\(|%|M30|$", line) else f"{first + step * place} {line}\n"
+        f"{line.removeprefix('|')}\n"
+        if re.match(r"N?[0-9]|[|(%]|M30|$", line)
+        else f"{first + step * place} {line}\n"
         for place, line in enumerate(lines)
     )
 
@@ -242,9 +244,7 @@ def _row(values: dict[str, str]) -> str:
 
 
 def _difference(old: dict[str, str], new: dict[str, str]) -> dict[str, str]:
-    return {
-        name: new.get(name, "gone") for name in {**old, **new} if old.get(name) != new.get(name)
-    }
+    return {name: new.get(name, "gone") for name in {**old, **new} if old.get(name) != new.get(name)}
 
 
 class Screen:
@@ -313,7 +313,8 @@ def _section(section: str, bench: Bench) -> str:
         found = list(bench.evaluate(before, bodies))
     else:
         found = [
-            " ; ".join(bench.execute(numbered([*before, *body.split(" / ")], 1, 1))) or "nothing" for body in bodies
+            " ; ".join(bench.execute(numbered([*before, *body.split(" / ")], 1, 1))) or "nothing"
+            for body in bodies
         ]
     width = max(map(len, items))
     rows = [f"{item:{width}} => {each}" for item, each in zip(items, found, strict=True)]
@@ -322,7 +323,7 @@ def _section(section: str, bench: Bench) -> str:
 
 def _executed(lines: list[str], bench: Bench) -> Iterator[str]:
     files: dict[str, list[str]] = {"main.npg": []}
-    name, keys, cycles = "main.npg", [], _CYCLES
+    name, keys, cycles, restarts = "main.npg", list[str](), _CYCLES, False
     for line in lines:
         if line.startswith("@ "):
             name = line[2:]
@@ -332,12 +333,14 @@ def _executed(lines: list[str], bench: Bench) -> Iterator[str]:
         elif line.startswith("cycles "):
             cycles = int(line.split()[1])
         elif line == "restart":
-            bench.restart()
+            restarts = True
         elif line:
             files[name].append(line)
     for name, content in files.items():
         if name != "main.npg":
             bench.write(name, numbered(content))
+    if restarts:
+        bench.restart()
     yield from bench.execute(numbered(files["main.npg"]), cycles, keys)
     for name in files:
         if name != "main.npg":
