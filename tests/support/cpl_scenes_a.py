@@ -1,4 +1,4 @@
-"""CPL programs on a living control: texts of programs go in, and everything that they leave behind is written beside them.
+"""CPL programs on a living control: their texts go in, and everything that they leave behind is written beside them.
 
 A scene is a text of sections. `== title` begins a program, `@ NAME` another file beside it; `=? title` begins a table
 of expressions (`? EXPRESSION` after the lines that come before), each assigned to a variable of each type; `=! title`
@@ -48,6 +48,9 @@ def shown(name: str, value: object) -> str:
         return '"' + value.encode("unicode_escape").decode().replace('"', '\\"') + '"'
     if isinstance(value, dict):
         return "{" + " ".join(f"{_index(key)}:{shown(name, each)}" for key, each in value.items()) + "}"
+    if isinstance(value, list | tuple) and len(value) > 20:
+        known = (f"{index}:{shown(name, each)}" for index, each in enumerate(value) if each is not None)
+        return f"({len(value)} elements, {' '.join(known)})"
     if isinstance(value, list | tuple):
         return "(" + " ".join(shown(name, each) for each in value) + ")"
     return str(value)
@@ -139,6 +142,8 @@ class Bench:
             number = numbers.get(re.sub(r" \[\d+]$", "", what), "?")
             told = [place.removeprefix("main.npg:"), *([number] if number != "0" else ()), what]
             yield f"error {' '.join(told)}"
+            numbers.pop(re.sub(r" \[\d+]$", "", what), None)
+        yield from (f"present {number} {what}" for what, number in numbers.items())
         yield from (f"warning {columns[0]} {columns[-1]}" for columns in entries[Tab.WARNINGS])
 
     def _messages(self) -> Iterator[str]:
