@@ -83,7 +83,7 @@ class Bench:
         self._permanent = self._variables("@")
         self._axes = self._places()
         self._files = self._contents()
-        self._screen = Screen(self.pnc.screen(1))
+        self._screens = {channel: Screen(self.pnc.screen(channel)) for channel in (1, 2)}
 
     def restart(self) -> None:
         """Switch the control off and on."""
@@ -105,31 +105,30 @@ class Bench:
         """Take the files as they are as no news."""
         self._files = self._contents()
 
-    def execute(self, text: str, cycles: int = _CYCLES, keys: Iterable[str] = ()) -> Iterator[str]:
+    def execute(
+        self, text: str, cycles: int = _CYCLES, keys: Iterable[str] = (), channel: int = 1
+    ) -> Iterator[str]:
         """Execute a program; yield how it ended and all that is other than before."""
         pnc = self.pnc
         pnc.reset()
         self._axes = self._places()
         self.write("main.npg", text)
-        pnc.hosts[0].keyboard.clear()
-        pnc.select_program("main.npg")
+        pnc.hosts[channel - 1].keyboard.clear()
+        pnc.select_program("main.npg", channel=channel)
+        for key in keys:
+            pnc.press(key, channel=channel)
         try:
-            pnc.cycle_start()
+            pnc.cycle_start(channel=channel)
         except ControlError as error:
             yield f"start refused: {error.what}"
-        for key in keys:
-            pnc.press(key)
-        pnc.advance(cycles, until=self._is_over)
+        pnc.advance(cycles, until=lambda: pnc.run_state(channel) is not RunState.ACTIVE)
         pnc.advance(200, until=self._at_rest)
-        state = pnc.run_state(1)
+        state = pnc.run_state(channel)
         if state not in (RunState.COMPLETED, RunState.ALARM):
             yield str(state)
         yield from self._errors()
-        yield from self._messages()
-        yield from self.news()
-
-    def _is_over(self) -> bool:
-        return self.pnc.run_state(1) is not RunState.ACTIVE
+        yield from self._messages(channel)
+        yield from self.news(channel)
 
     def _at_rest(self) -> bool:
         return not any(axis.moving for axis in self.pnc.axes.values())
@@ -146,19 +145,21 @@ class Bench:
         yield from (f"present {number} {what}" for what, number in numbers.items())
         yield from (f"warning {columns[0]} {columns[-1]}" for columns in entries[Tab.WARNINGS])
 
-    def _messages(self) -> Iterator[str]:
-        run = self.pnc.control.channels[0].run
+    def _messages(self, channel: int) -> Iterator[str]:
+        run = self.pnc.control.channels[channel - 1].run
         for message in () if run is None else run.channel.messages.all():
             times = f" ({message.count} times)" if message.count > 1 else ""
             yield f"line {message.line}: {message.text.encode('unicode_escape').decode()}{times}"
 
-    def news(self) -> Iterator[str]:
+    def news(self, channel: int) -> Iterator[str]:
         """Yield what variables, axes, files and the screen have become."""
-        found = {name: shown(name, value) for name, value in self.pnc.variables(1).items() if name[0] == "#"}
+        found = {
+            name: shown(name, value) for name, value in self.pnc.variables(channel).items() if name[0] == "#"
+        }
         if found:
             yield " ".join(f"{name}={value}" for name, value in sorted(found.items()))
         permanent, axes, files, screen = (
-            self._variables("@"), self._places(), self._contents(), Screen(self.pnc.screen(1))
+            self._variables("@"), self._places(), self._contents(), Screen(self.pnc.screen(channel))
         )  # fmt: skip
         if changed := _difference(self._permanent, permanent):
             yield " ".join(f"{name}={value}" for name, value in changed.items())
@@ -166,8 +167,9 @@ class Bench:
             yield " ".join(f"{name} {value}" for name, value in changed.items())
         for name, value in _difference(self._files, files).items():
             yield f"file {name} {value}"
-        yield from screen.news(self._screen)
-        self._permanent, self._axes, self._files, self._screen = permanent, axes, files, screen
+        yield from screen.news(self._screens[channel])
+        self._permanent, self._axes, self._files = permanent, axes, files
+        self._screens[channel] = screen
 
     def _variables(self, first: str) -> dict[str, str]:
         return {
@@ -329,12 +331,15 @@ def _section(section: str, bench: Bench) -> str:
 def _executed(lines: list[str], bench: Bench) -> Iterator[str]:
     files: dict[str, list[str]] = {"main.npg": []}
     name, keys, cycles, restarts = "main.npg", list[str](), _CYCLES, False
+    channel = 1
     for line in lines:
         if line.startswith("@ "):
             name = line[2:]
             files[name] = []
         elif line.startswith("keys "):
             keys = line.split()[1:]
+        elif line.startswith("channel "):
+            channel = int(line.split()[1])
         elif line.startswith("cycles "):
             cycles = int(line.split()[1])
         elif line == "restart":
@@ -346,7 +351,7 @@ def _executed(lines: list[str], bench: Bench) -> Iterator[str]:
             bench.write(name, numbered(content))
     if restarts:
         bench.restart()
-    yield from bench.execute(numbered(files["main.npg"]), cycles, keys)
+    yield from bench.execute(numbered(files["main.npg"]), cycles, keys, channel)
     for name in files:
         if name != "main.npg":
             (bench.folder / name).unlink(missing_ok=True)
