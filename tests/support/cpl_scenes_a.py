@@ -110,7 +110,7 @@ class Bench:
     ) -> Iterator[str]:
         """Execute a program; yield how it ended and all that is other than before."""
         pnc = self.pnc
-        pnc.reset()
+        pnc.reset(channel=channel)
         self._axes = self._places()
         self.write("main.npg", text)
         pnc.hosts[channel - 1].keyboard.clear()
