@@ -274,7 +274,8 @@ class Screen:
             yield f"{name} {value}"
         for number, (line, before) in enumerate(zip(self.lines, old.lines, strict=True), 1):
             if line != before:
-                yield f"{number:2}|{line}" + self._colours(number)
+                softkeys = f"| softkeys {self.other['softkey colours']}" if number == 43 and line else ""
+                yield f"{number:2}|{line}" + self._colours(number) + softkeys
         for text in self.texts:
             if text not in old.texts:
                 font = "" if tuple(text.font) == _FONT else f" {tuple(text.font)}"
