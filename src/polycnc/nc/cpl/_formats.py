@@ -11,7 +11,7 @@ _WIDTHS = {"I": (9, 0), "R": (8, 3), "D": (16, 6)}
 def default_format(kind: str, value: float) -> str:
     """Return a number as its type is written: INTEGER 9 places, REAL 4 and 3, DOUBLE 9 and 6."""
     width, decimals = _WIDTHS["D" if kind == "X" else kind]
-    return f"{value:{width}.{decimals}f}" if decimals else f"{value:{width}d}"
+    return _fixed(value, width, decimals) if decimals else f"{value:{width}d}"
 
 
 def groups(form: str) -> list[tuple[int, int]]:
@@ -22,9 +22,9 @@ def groups(form: str) -> list[tuple[int, int]]:
 def number_in(group: str, value: float) -> str | None:
     """Return a number in a group of digit places, None if it does not fit."""
     decimals = len(group) - group.index(".") - 1 if "." in group else 0
-    text = f"{value:{len(group)}.{decimals}f}"
-    if not float(text):
-        text = f"{0.0:{len(group)}.{decimals}f}"
+    text = _fixed(value, len(group), decimals)
+    if group[0] == "." and text[0] == "0":  # no place before the point
+        text = text[1:]
     return text if len(text) == len(group) else None
 
 
@@ -36,3 +36,9 @@ def in_format(form: str, value: float) -> str | None:
     begin, end = places[0]
     written = number_in(form[begin:end], value)
     return None if written is None else form[:begin] + written + form[end:]
+
+
+def _fixed(value: float, width: int, decimals: int) -> str:
+    """Return a number with decimals; what is rounded to 0 has no sign."""
+    text = f"{value:{width}.{decimals}f}"
+    return text if float(text) else f"{0.0:{width}.{decimals}f}"

@@ -192,7 +192,9 @@ def whole(value: float) -> int:
 @function("ROUND(value)", "I", Takes.NUMBER)
 def nearest(value: float) -> int:
     """Return a number rounded to the nearest whole one, halves away from zero."""
-    return _bounded(math.floor(value + 0.5) if value >= 0 else math.ceil(value - 0.5))
+    below = math.floor(abs(value))
+    number = below + (abs(value) - below >= 0.5)
+    return _bounded(number if value >= 0 else -number)
 
 
 def _bounded(value: int) -> int:

@@ -33,7 +33,9 @@ class Typed(NamedTuple):
 
 def rounded(typed: Typed, double: bool) -> Python:
     """Return a value as its type has it, rounded to single precision if need be."""
-    return typed.python if typed.exact or double else Python(f"single({typed.python.text})")
+    return (
+        typed.python if typed.exact or double or typed.kind == "D" else Python(f"single({typed.python.text})")
+    )
 
 
 def number(tree: Number, double: bool) -> Typed:

@@ -325,15 +325,14 @@ class Values:
             while isinstance(bare, Parentheses):
                 bare = bare.inner
             if isinstance(bare, Word):
-                raise Flaw(bare.at, "+ does not take NUL")
+                raise Flaw(bare.at, f"+ does not take {'NUL' if bare.value is None else 'BOOLEAN'}")
             stored = self.stored(part, depth)
             return stored if makes_text(part) else f"text_of({stored})"
 
-        parts = [text(tree.first)]
         for link in tree.links:
             if link.operator != "+":
                 raise Flaw(link.at, f"texts are joined by +, not by {link.operator}")
-            parts.append(text(link.operand))
+        parts = [text(part) for part in (tree.first, *(link.operand for link in tree.links))]
         return f"added({', '.join(parts)})"
 
 

@@ -84,7 +84,8 @@ class Dialog:
         return self._in_dialog
 
     def finish(self) -> None:
-        """End the program: softkeys go, the font is the default one again, keys that nobody asked for are lost."""
+        """End the program: dialog and softkeys go, the font is the default one again, nothing is half typed."""
+        self._in_dialog, self._prompts, self._shown = False, [], 0
         self._typing = "", False
         self.surface.softkeys = ()
         self._font = Font()

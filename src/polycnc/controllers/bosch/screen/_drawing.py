@@ -71,9 +71,7 @@ class Drawing:
         if len(places) not in (3, 6):
             raise Fault("INVALID PARAMETER", "a circle has centre and radius, an arc start, end and centre")
         if len(places) == 3:
-            x, y, radius = (
-                _or(each, old) for each, old in zip(places, (*self._circle[4:], None), strict=True)
-            )
+            x, y, radius = (_or(each, old) for each, old in zip(places, self._last_circle(), strict=True))
             start = end = (x + radius, y)
         else:
             kept = [None if each is OMITTED else number(each) for each in places]
@@ -95,6 +93,13 @@ class Drawing:
         angles = [begin - sweep * step / steps for step in range(steps + 1)]
         self._line([self._pixel(x + radius * math.cos(a), y + radius * math.sin(a)) for a in angles])
         return 0
+
+    def _last_circle(self) -> tuple[float | None, float | None, float | None]:
+        """Return centre and radius of the last circle or arc, None where there was none."""
+        start_x, start_y, _, _, x, y = self._circle
+        if start_x is None or start_y is None or x is None or y is None:
+            return x, y, None
+        return x, y, math.dist((start_x, start_y), (x, y))
 
     def _fil(self, x: object, y: object, pattern: object, colour: object, contour: object = OMITTED) -> int:
         code = colour_code(colour)
