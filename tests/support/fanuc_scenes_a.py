@@ -123,12 +123,11 @@ class Bench:
     # ------------------------------------------------------------------ the control
 
     def control(self, **keys: Any) -> PowerMate:
-        """Begin with a new control."""
+        """Begin with a new control; a look tells what differs from the last look at the one before."""
         self.device = PowerMate(**keys)
         fwlib.detach()
         fwlib.attach(0, self.device)
         _, self.handle = fwlib.cnc_allclibhndl()
-        self._known = {}
         return self.device
 
     def code(self, name: str, *given: Any) -> EW:

@@ -59,14 +59,15 @@ def transfers(b: Bench) -> None:
         b.say(f"{number}: {opened} {' '.join(codes)}; too few characters: {_short_piece(b, number)}")
     b.say(f"of an upload: {_upload_lengths(b)}")
     b.title("numbers of programs")
+    b.device.select_mode("EDIT")
+    b.code("cnc_delall")
     for name in (
         "O0", "O1", "O01", "O0001", "O9999", "O09999", "O10000", "O00009999", "O123456789", "O", "O-1", "O1.", "N1", "O7X",
         "(C)", ":5", "O5O6", "O8(A)G1", "o9",
     ):  # fmt: skip
         _sent(b, "", stream(name, "M30"))
-        b.control() if name == "O9999" else b.code("cnc_delall")
+        b.code("cnc_delall")
     b.title("characters")
-    b.control()
 
     def taken(before: bytes, after: bytes) -> str:
         def code(byte: int) -> str:
@@ -212,7 +213,7 @@ def rules(b: Bench) -> None:
                 f"3290 = {value}, key {key or 'all'}: {opened}, {codes}, delete {b.cell('cnc_delete', 7)}, search {b.cell('cnc_search', 8)}, upload {b.cell('cnc_upstart', 8)}, delall {b.cell('cnc_delall')} leaves {_numbers(b)}"
             )
     b.title("a memory that gets full")
-    for characters in (36, 35, 34):
+    for characters in (32, 31, 30):
         b.control(characters=characters, most_programs=2)
         registered(b.device, O1=";G1X1.;M30")
         _sent(b, f"{characters} characters in all, ", stream("O2", "G1X2.", "M30"))
@@ -339,7 +340,7 @@ def execution(b: Bench) -> None:
     b.do("reset on the way", device.reset)
     device.advance(300)
     b.title("searches and rewind")
-    registered(device, O4=";N5G4;N50G4;N5X1.;N050X2.;N007X3.;/N8X4.;N99999;X5N9;M30")
+    registered(device, O4=";N5G4P1;N50G4P1;N5X1.;N050X2.;N007X3.;/N8X4.;N99999;X5N9;M30")
     b.do("search O4", lambda: b.code("cnc_search", 4))
     for number in (5, 50, 7, 8, 99999, 9, 0, -1, 6, 100000, -0x80000000, 0x7FFFFFFF):
         b.call("cnc_seqsrch", number)
@@ -485,7 +486,7 @@ def states(b: Bench) -> None:
             device = b.control()
             registered(
                 device,
-                O7=";G1X9.F3000;N30Y9.;Z9.;M30", O8=";N30M30", O9=";G4;N30M0;M30", O10=";N30X1.F9000;G1Q9;M30", O9001=";M99",
+                O7=";G1X9.F3000;N30Y9.;Z9.;M30", O8=";N30M30", O9=";G4P1;N30M0;M30", O10=";N30X1.F9000;G1Q9;M30", O9001=";M99",
             )  # fmt: skip
             device.select_program(7)
             begin(b)

@@ -15,6 +15,7 @@ import pytest
 
 from polycnc.controllers.fanuc import fwlib
 from support import fanuc_scenes_a_axes as axes
+from support import fanuc_scenes_a_data as data
 from support import fanuc_scenes_a_programs as programs
 from support.fanuc_scenes_a import Bench
 
@@ -30,6 +31,12 @@ SCENES: dict[str, Callable[[Bench], None]] = {
     "execution": programs.execution,
     "mdi": programs.mdi,
     "states": programs.states,
+    "offsets": data.offsets,
+    "parameters": data.parameters,
+    "ranges": data.ranges,
+    "effects": data.effects,
+    "macros": data.macros,
+    "handles": data.handles,
 }
 
 
