@@ -11,6 +11,7 @@ from collections.abc import Callable, Iterable, Iterator
 from typing import Any
 
 from polycnc.controllers.fanuc import PowerMate, fwlib
+from polycnc.controllers.fanuc.data._parameter_rows import Kind, parameter_rows
 from polycnc.controllers.fanuc.fwlib import ALL_AXES, EW
 
 POSITIONS = ("absolute", "machine", "relative", "distance", "skip", "srvdelay", "accdecdly")
@@ -271,7 +272,20 @@ class Bench:
                     made[f"#{number}"] = f"{each.mcr_val} {each.dec_val}"
         _, last, length, data = self.get("cnc_rdparar", 0, ALL_AXES, 9999, LONGEST)
         assert (last, length) == (8022, len(data))
-        return made | records(data, device.max_axis)
+        return made | {
+            name: each
+            for name, each in records(data, device.max_axis).items()
+            if each != _default(name, device)
+        }
+
+
+def _default(name: str, device: PowerMate) -> str:
+    """Return the line of a parameter that has its default on every axis."""
+    row = parameter_rows()[int(name.split()[1])]
+    values = [row.default] * (device.axes if row.per_axis else 1)
+    values += [0] * (device.max_axis - device.axes if row.per_axis else 0)
+    signed = (value - 256 if row.kind is Kind.BIT and value > 127 else value for value in values)
+    return f"type {int(row.kind) << 8 | (0xFF if row.per_axis else 0):#06x}: {' '.join(map(str, signed))}"
 
 
 def stream(*blocks: str) -> bytes:
