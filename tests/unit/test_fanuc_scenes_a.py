@@ -8,6 +8,7 @@ ends of its range. After a wanted change: `--update-goldens`, and read the diffe
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
 from itertools import zip_longest
 from pathlib import Path
 
@@ -17,6 +18,8 @@ from polycnc.controllers.fanuc import fwlib
 from support import fanuc_scenes_a_axes as axes
 from support import fanuc_scenes_a_data as data
 from support import fanuc_scenes_a_programs as programs
+from support import fanuc_scenes_a_walk as walk
+from support import fanuc_scenes_a_wire as wire
 from support.fanuc_scenes_a import Bench
 
 RECORDED = Path(__file__).parents[1] / "golden" / "fanuc_a"
@@ -37,6 +40,9 @@ SCENES: dict[str, Callable[[Bench], None]] = {
     "effects": data.effects,
     "macros": data.macros,
     "handles": data.handles,
+    "feeds": walk.feeds,
+    "wire": wire.wire,
+    **{name: partial(walk.walk, name) for name in walk.WALKS},
 }
 
 
