@@ -36,13 +36,11 @@ def feeds(b: Bench) -> None:
             device.select_program(7)
             device.cycle_start()
             cells = []
-            for act in (
-                lambda: None,
-                lambda: device.signals.give(12, 255 - 50),
-                lambda: device.signals.give(12, 255 - 254),
-                device.feed_hold,
-            ):
-                act()
+            for override in (100, 50, 254, None):
+                if override is None:
+                    device.feed_hold()
+                else:
+                    device.signals.give(12, 255 - override)
                 device.advance(150)
                 dynamic = b.get("cnc_rddynamic", ALL_AXES, 118)
                 assert b.get("cnc_actf").data == dynamic.actf
@@ -78,7 +76,7 @@ PROGRAMS = {
     9010: "M99",
 }
 MODES = ("MDI", "MEM", "MEM", "MEM", "EDIT", "JOG", "RMT", "REF")
-LENGTHS = (0, 3, 5, 6, 7, 8, 9, 10, 12, 14, 16, 18, 20, 22, 28, 38, 118, 262)
+LENGTHS = (0, 5, 6, 7, 8, 10, 12, 16, 18, 20, 28, 28, 38, 118, 118, 262, 402)
 PARAMETERS = (
     0,
     12,
@@ -133,7 +131,10 @@ class Walk:
             ("alarm 1007", lambda: device.raise_alarm(1007)),
         )  # fmt: skip
         words, act = self.draw.choice(acts)
-        if self.draw.random() < 0.4:
+        program = self.draw.choice((7, 7, 9))
+        if self.draw.random() < 0.3:
+            words, act = f"run O{program}", lambda: self._begin(device, program)
+        elif self.draw.random() < 0.4:
             mode = self.draw.choice(MODES)
             words, act = mode, lambda: device.select_mode(mode)
         cycles = self.draw.choice((1, 7, 40, 40, 300))
@@ -144,6 +145,14 @@ class Walk:
         device.advance(cycles)
         self.b.say(f"> {words}, {cycles} ms")
 
+    def _begin(self, device: PowerMate, program: int) -> None:
+        device.emergency_stop(False)
+        device.reset()
+        device.advance(300)
+        device.select_mode("MEM")
+        device.select_program(program)
+        device.cycle_start()
+
     def _call(self, name: str, *given: Any) -> None:
         answer = getattr(fwlib, f"cnc_{name}")(self.b.handle, *given)
         code, rest = (answer[0], answer[1:]) if isinstance(answer, tuple) else (answer, ())
@@ -152,7 +161,7 @@ class Walk:
 
     def _chosen(self) -> tuple[Any, ...]:
         one, draw = self.draw.choice, self.draw
-        axis = one((-1, -1, 0, 1, 2, 3, 4, 7))
+        axis = one((-1, -1, -1, 0, 1, 1, 2, 2, 3, 4, 7))
         length = one(LENGTHS)
         number = one((*PROGRAMS, *PROGRAMS, 1, 0, 9999))
         value = one((0, 1, -1, 77, -1234, 99999999, 100000000, 999999, draw.randrange(-500000, 500000)))
