@@ -80,6 +80,12 @@ def offsets(b: Bench) -> None:
             b.say(
                 f"  in {'mm' if inch else 'inch'} then {numbers(b.get('cnc_rdtofsr', 1, -1, 6, 30).u.m_ofs_a)}"
             )
+    b.title("all of them at once, and the halves")
+    b.control()
+    b.say(b.cell("cnc_wrtofsr", 402, _offsets(1, 99, -1, (7 * k - 350 for k in range(99)), "m_ofs_a")))
+    b.say(numbers(b.get("cnc_rdtofsr", 1, 0, 99, 402).u.m_ofs))
+    b.say(" ".join(str(b.get("cnc_rdtofs", number, 0, 8).data) for number in range(1, 100)))
+    b.say(numbers(b.get("cnc_rdtofsr", 50, -1, 99, 402).u.m_ofs_a))
     b.title("as tool length of a program, changed while it runs, after switching off")
     device = b.control()
     registered(device, O7=";G43H99Z1.;G4P20;G43H1Z1.;G44H99Z1.;G49Z1.;G43H2Z0;M30")
@@ -304,7 +310,35 @@ def _written_ranges(b: Bench) -> None:
         )
     part = _record(6711, 0, "i", 9)
     b.say(f"lengths: {runs((n, b.cell('cnc_wrparas', n, part)) for n in range(-1, 10))}")
+    b.title("six axes, a value of its own on each, of each kind")
+    for number, values in (
+        (12, (1, -2, 3, -128, 127, 6)),
+        (1022, (1, 2, 3, 4, 5, 6)),
+        (1620, (10, 20, 30, 400, 50, 4000)),
+        (1851, (1, -2, 300, -4000, 5, -9999)),
+        (1321, (-1, 20, -300, 4000, -50000, 600000)),
+    ):
+        b.control(axes=6)
+        row = parameter_rows()[number]
+        size = row.kind.size
+        written = [b.cell("cnc_wrparam", 4 + size, _psd(row, k, value)) for k, value in enumerate(values, 1)]
+        alone = " ".join(_read(b, row, axis) for axis in range(1, 7))
+        b.say(
+            f"{number}: {' '.join(written)}; {alone} | {_read(b, row, ALL_AXES)} | {_range(b, 'rdparar', number, -1, number, 99)}"
+        )
+        b.code("cnc_wrparam", 4 + 6 * size, _psd(row, -1, *values[::-1]))
+        b.say(
+            f"  {_read(b, row, ALL_AXES)} | {' '.join(_range(b, 'rdparar', number, axis, number, 99)[14:] for axis in range(1, 7))}"
+        )
     b.title("options and protection")
+    b.control(options=())
+    for data in (
+        _record(6711, 0, "i", 5) + _record(8010, 1, "b", 1),
+        _record(6080, 0, "b", 5) + _record(6711, 0, "i", 5),
+    ):
+        b.say(
+            f"one of two needs an option: {b.cell('cnc_wrparas', len(data), data)}, {b.get('cnc_rdparam', 6711, 0, 8).u.ldata}"
+        )
     for options in ((), ("custom_macro",), ("pmc_axis",), ("custom_macro", "pmc_axis")):
         b.control(options=options)
         asked = (f"{number} {_three_ways(b, number)}" for number in (6000, 6080, 8010, 8022, 6711, 1300))
@@ -511,6 +545,13 @@ def macros(b: Bench) -> None:
             entry.mcr_val, entry.dec_val = mantissa, decimals
         b.say(f"{values}: {b.cell('cnc_wrmacror', 24, record)}")
         b.call("cnc_rdmacror", 509, 513, 36)
+    b.title("the largest range")
+    b.control()
+    record = fwlib.IODBMR(datano_s=500, datano_e=999)
+    for k, entry in enumerate(record.data):
+        entry.mcr_val, entry.dec_val = (k - 250) * 11, k % 9
+    b.say(b.cell("cnc_wrmacror", 3006, record))
+    b.say(" ".join(f"{each.mcr_val}/{each.dec_val}" for each in b.get("cnc_rdmacror", 500, 999, 3006).data))
     _locals(b)
 
 

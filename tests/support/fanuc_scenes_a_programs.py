@@ -216,7 +216,7 @@ def rules(b: Bench) -> None:
     for characters in (32, 31, 30):
         b.control(characters=characters, most_programs=2)
         registered(b.device, O1=";G1X1.;M30")
-        _sent(b, f"{characters} characters in all, ", stream("O2", "G1X2.", "M30"))
+        _sent(b, f"{characters} characters in all, ", stream("O0002", "G1X2.", "M30"))
         _sent(b, "", stream("O3", "M30"), 3)
     b.control(most_programs=2)
     for number in (1, 2, 3):
@@ -298,6 +298,13 @@ def directory(b: Bench) -> None:
         _download(b, stream(f"O{number}{comment}", "M30"))
     for number in range(1, 10):
         b.call("cnc_rdprogdir", 2, number, number, 70)
+    b.title("as many as there can be")
+    b.control()
+    for number in range(9999, 9999 - 80 * 125, -80):
+        b.device.programs.register(number, f"O{number:04d}({number})\nM30\n")
+    for kind in range(3):
+        b.say(_directory(b, kind, 0x7FFF)[1])
+    b.look()
     b.title("nothing registered, and the most")
     b.control(most_programs=3, characters=30)
     b.look()
@@ -399,6 +406,14 @@ def mdi(b: Bench) -> None:
         f"while a block is stopped at: {b.cell('cnc_wrmdiprog', len(data), data)}, {b.cell('cnc_wrmdipntr', 1)}"
     )
     device.control.set_switches(single_block=False)
+    edit = device.programs.edit(6, background=True)
+    b.say(f"while O6 is edited: {b.cell('cnc_wrmdiprog', len(data), data)}, {b.cell('cnc_wrmdipntr', 2)}")
+    edit.close()
+    device.reset()
+    edit = device.programs.edit(6, background=True)
+    b.say(f"and after a reset: {b.cell('cnc_wrmdiprog', len(data), data)}, {b.cell('cnc_wrmdipntr', 2)}")
+    edit.close()
+    b.say(f"not any more: {b.cell('cnc_wrmdipntr', 2)}, {b.cell('cnc_wrmdipntr', 1)}")
     for words, act in (
         ("start", device.cycle_start), ("reset", device.reset), ("MEM", partial(device.select_mode, "MEM")),
         ("MDI", partial(device.select_mode, "MDI")), ("off and on", device.power_cycle), ("MDI again", partial(device.select_mode, "MDI")),

@@ -50,7 +50,7 @@ SCENES: dict[str, tuple[Callable[[Bench], None], str]] = {
     "moves": (
         axes.moves,
         rf"{OF_AXES}|ALL_AXES|MAX_AXIS|concept\.(position_contents|dynamic_snapshot|decimal_point|axis_number)|enum\.axis\..*"
-        r"|units\..*|ncparam\.1004_.|concept\.seqnum_retention",
+        r"|units\..*|ncparam\.1004_.|concept\.seqnum_retention|cnc_(rdexecprog|rdprgnum|rdseqnum)",
     ),
     "refusals": (
         axes.refusals,
