@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import struct
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from typing import Any
 
 from polycnc.controllers.fanuc import PowerMate, fwlib
 from polycnc.controllers.fanuc.data._parameter_rows import ParameterRow, parameter_rows
+from polycnc.controllers.fanuc.device._modes import PowerMateMode
 from polycnc.controllers.fanuc.fwlib import ALL_AXES, EW
-from support.fanuc_scenes_a import Bench, numbers, registered, runs, short, stream
+from support.fanuc_scenes_a import Bench, numbers, registered, runs, short, shown, stream
 from support.power_mate import psd
 
 LARGEST = 0x7FFFFFFF
@@ -408,11 +409,24 @@ def effects(b: Bench) -> None:
             device.select_program(7)
             device.cycle_start()
             device.advance(600)
-            machine = numbers(b.get("cnc_machine", -1, 28).data)
-            alarm = [f"{each.number} {each.text}" for each in device.control.alarms.active]
-            b.say(
-                f"{number} of axis {axis} {value}: {codes}, at {machine}, {', '.join(alarm) or 'no alarm'}, bits {b.get('cnc_rddynamic', 1, 38).alarm:#x}"
-            )
+            b.say(f"{number} of axis {axis} {value}: {codes}, {_stopped(b)}")
+    b.title("limits on the other side of zero: from there to a target")
+    for axis in (1, 3):
+        for number, value, start, target in (
+            (1320, -1500, -3, -1),
+            (1320, -1500, -1, -3),
+            (1321, 1500, 3, 1),
+            (1321, 1500, 1, 3),
+            (1320, 0, -1, 1),
+            (1321, 0, 1, -1),
+        ):
+            device = b.control(axes=3)
+            name = "XYZ"[axis - 1]
+            registered(device, O7=f";G1{name}{start}.F9000;M30", O8=f";G1{name}{target}.F9000;M30")
+            _run(device, 7)
+            written = b.cell("cnc_wrparam", 8, psd(number, axis, ldata=value))
+            _run(device, 8)
+            b.say(f"{number} of axis {axis} {value}, {start} to {target}: {written}, {_stopped(b)}")
     b.title("units, 1001 and 1004, at once and after the power was off")
     for number, value in ((1004, 1), (1004, 2), (1004, 3), (1004, 4), (1001, 1), (1001, 2)):
         device = b.control()
@@ -436,6 +450,18 @@ def effects(b: Bench) -> None:
     b.look(data=True)
     b.do("off and on", device.power_cycle, data=True)
     b.do("reset", device.reset, data=True)
+
+
+def _run(device: PowerMate, program: int) -> None:
+    device.select_program(program)
+    device.cycle_start()
+    device.advance(900)
+
+
+def _stopped(b: Bench) -> str:
+    alarm = [f"{each.number} {each.text}" for each in b.device.control.alarms.active]
+    machine, bits = numbers(b.get("cnc_machine", -1, 28).data), b.get("cnc_rddynamic", 1, 38).alarm
+    return f"at {machine}, {', '.join(alarm) or 'no alarm'}, bits {bits:#x}"
 
 
 def _places(b: Bench) -> str:
@@ -595,6 +621,27 @@ def _locals(b: Bench) -> None:
             b.call(f"cnc_{name}", *given)
     device.advance(500)
     b.say("> at the end")
+    assert [b.get("cnc_rdmacro", k, 10).mcr_val for k in range(1, 34)] == [
+        each.mcr_val for each in b.get("cnc_rdmacror", 1, 33, 204).data
+    ]
+    b.look(data=True)
+    b.title("local variables while it is held, in single block, at M0, in alarm, in MDI")
+    registered(device, O10=";#1=10;G65P11A11.;M30", O11=";#2=12;G4P90;M0;#3=1/0;M99")
+    device.select_program(10)
+    device.cycle_start()
+    device.advance(30)
+    for words, act in (
+        ("held", device.feed_hold), ("to M0", device.cycle_start), ("to the alarm", device.cycle_start), ("reset", device.reset),
+        ("MDI", lambda: (device.select_mode("MDI"), device.mdi.put(b"\nO1\n#5=5\nG65P8A7.\n#6=6\nM30\n%"), device.cycle_start())),
+        ("its end", lambda: None), ("MEM", lambda: device.select_mode("MEM")),
+    ):  # fmt: skip
+        act()
+        device.advance(40 if words in ("held", "MDI") else 300)
+        b.say(f"> {words}")
+        b.look(data=True)
+    device.select_program(7)
+    device.cycle_start()
+    device.advance(500)
     b.look(data=True)
     b.do("reset", device.reset, data=True)
     for value in (0, 64, 128, 192):
@@ -606,6 +653,115 @@ def _locals(b: Bench) -> None:
         b.do(f"6001 = {value}, reset", device.reset, data=True)
         device.advance(100)
     b.do("off and on", device.power_cycle, data=True)
+
+
+# ---------------------------------------------------------------------- every state
+
+
+STATES: dict[str, Callable[[PowerMate], object]] = {
+    "at rest": lambda device: None,
+    "O7 moves": lambda device: (device.cycle_start(), device.advance(60)),
+    "O7 dwells in O8": lambda device: (device.cycle_start(), device.advance(1500)),
+    "O7 held": lambda device: (
+        device.cycle_start(),
+        device.advance(60),
+        device.feed_hold(),
+        device.advance(300),
+    ),
+    "O7 after reset": lambda device: (
+        device.cycle_start(),
+        device.advance(60),
+        device.reset(),
+        device.advance(300),
+    ),
+    "alarm 1007": lambda device: device.raise_alarm(1007),
+    "alarm 417 of axis 2 while O7 moves": lambda device: (
+        device.cycle_start(),
+        device.advance(60),
+        device.raise_alarm(417, axis=2),
+    ),
+    "alarm 000": lambda device: device.raise_alarm(0),
+    "alarm 100": lambda device: device.raise_alarm(100),
+    "emergency stop": lambda device: device.emergency_stop(),
+    "off and on": lambda device: device.power_cycle(),
+    "keys on": lambda device: device.protect_key(True),
+    "a download": lambda device: device.begin_transfer(),
+    "a background edit": lambda device: device.programs.edit(8, background=True),
+    "skip signal": lambda device: device.skip_signal(True),
+    **{mode.label: (lambda device, mode=mode: device.select_mode(mode)) for mode in PowerMateMode},
+}
+FITTED: dict[str, dict[str, Any]] = {
+    "no options": {"options": ()},
+    "one axis": {"axes": 1},
+    "six axes": {"axes": 6},
+    "Power Mate-D": {"model": "D"},
+    "inch input": {"inch_input": True},
+    "IS-A": {"increment": "IS-A"},
+}
+
+
+def _everything() -> Iterator[tuple[str, tuple[Any, ...]]]:
+    """Yield calls of data and axes that are carried out, and those that are refused."""
+    yield from (each for each in _ASKED if each[0] in READS)
+    far = _record(6711, 0, "i", 31) + _record(6712, 0, "i", 32)
+    record = fwlib.IODBMR(datano_s=510, datano_e=511)
+    record.data[0].mcr_val, record.data[1].dec_val = 5, 2
+    yield from (
+        ("absolute", (1, 8)), ("absolute", (0, 8)), ("absolute", (7, 8)), ("machine", (-1, 7)), ("rddynamic", (1, 38)), ("rddynamic", (1, 37)),
+        ("skip", (7, 8)), ("distance", (1, 8)), ("wrrelpos", (8, fwlib.IDBWRR(type=1, data=[44]))), ("wrrelpos", (7, fwlib.IDBWRR(type=1))),
+        ("wrrelpos", (8, fwlib.IDBWRR(type=7))), ("wrrelpos", (8, fwlib.IDBWRR(type=1, data=[100000000]))), ("relative", (1, 8)),
+        ("wrtofs", (99, 0, 8, -321)), ("wrtofs", (100, 0, 8, 1)), ("wrtofs", (1, 1, 8, 1)), ("wrtofs", (1, 0, 8, 10000000)), ("rdtofs", (99, 0, 8)),
+        ("rdtofs", (0, 0, 8)), ("wrtofsr", (18, _offsets(2, 4, 0, (4, -5, 6)))), ("wrtofsr", (17, _offsets(2, 4, 0, ()))), ("rdtofsr", (2, -1, 4, 18)),
+        ("wrparam", (8, psd(6713, 0, ldata=77))), ("wrparam", (8, psd(1010, 0, cdata=3))), ("wrparam", (8, psd(1423, 1, ldata=3500))),
+        ("wrparam", (8, psd(1423, 0, ldata=3500))), ("wrparam", (7, psd(1423, 1, ldata=3500))), ("wrparam", (8, psd(1423, 1, ldata=5))),
+        ("wrparam", (8, psd(6080, 0, cdata=33))), ("wrparam", (8, psd(2))), ("rdparam", (1423, 1, 8)), ("rdparam", (3210, 0, 8)), ("rdparam", (6080, 0, 5)),
+        ("wrparas", (len(far), far)), ("wrsets", (len(far), far)), ("wrsets", (6, _record(3281, 0, "b", 1))), ("wrparas", (6, _record(1010, 0, "b", 1))),
+        ("rdparar", (6711, 0, 6713, 24)), ("rdsetr", (6700, 0, 6712, 16)), ("rdparar", (1423, 0, 1423, 28)), ("rdparainfo", (1420, 2)),
+        ("wrmacro", (500, 10, -15, 1)), ("wrmacro", (100, 10, 25, 0)), ("wrmacro", (1, 10, 25, 0)), ("wrmacro", (500, 10, 5, 9)), ("rdmacro", (500, 10)),
+        ("rdmacro", (1, 10)), ("rdmacro", (1000, 10)), ("wrmacror", (18, record)), ("rdmacror", (510, 511, 18)), ("rdmacroinfo", ()), ("setmactype", (1,)),
+        ("rdmacro", (500, 10)), ("getmactype", ()), ("setmactype", (0,)), ("rdprogdir", (2, 1, 9999, 40)), ("rdproginfo", (1, 31)),
+    )  # fmt: skip
+
+
+READS = (
+    "actf",
+    "absolute",
+    "machine",
+    "relative",
+    "distance",
+    "skip",
+    "srvdelay",
+    "accdecdly",
+    "rddynamic",
+    "rdprgnum",
+    "rdseqnum",
+    "rdexecprog",
+)
+
+
+def everywhere(b: Bench) -> None:
+    """The same calls in every state and mode, and on other controls: what differs from a control at rest."""
+    wanted: list[str] = []
+    for words in (*STATES, *FITTED):
+        device = b.control(**FITTED.get(words, {}))
+        registered(device, O7=";G90G54N10G1X9.Y-4.F3000;N30M98P8;M30", O8=";N44G4P900;M99")
+        device.select_program(7)
+        STATES.get(words, STATES["at rest"])(device)
+        lines = [_answered(b, name, given) for name, given in _everything()]
+        b.title(words)
+        if wanted:
+            different = [line for line, other in zip(lines, wanted, strict=True) if line != other]
+            b.lines += different or ["as at rest"]
+        else:
+            wanted = lines
+            b.lines += lines
+
+
+def _answered(b: Bench, name: str, given: tuple[Any, ...]) -> str:
+    answer = getattr(fwlib, f"cnc_{name}")(b.handle, *given)
+    code, rest = (answer[0], answer[1:]) if isinstance(answer, tuple) else (answer, ())
+    told = " ".join(shown(each) for each in rest) if code == EW.EW_OK else ""
+    return f"{name}({', '.join(map(shown, given))}): {short(code)} {told}".rstrip()
 
 
 # ---------------------------------------------------------------------- handles

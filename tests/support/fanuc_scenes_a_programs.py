@@ -389,6 +389,9 @@ def mdi(b: Bench) -> None:
         b.say(f"> {text(data)}: {b.cell('cnc_wrmdiprog', len(data), data)}")
         b.look()
     b.title("pointers")
+    for blocks in (("O1", "G4P1"), ("O1", "G4P1", "M30")):
+        b.call("cnc_wrmdiprog", len(stream(*blocks)), stream(*blocks))
+        b.say(f"  {runs((pointer, b.cell('cnc_wrmdipntr', pointer)) for pointer in range(-2, 5))}")
     data = stream("O1", "G1X1.F60000", "N20Y1.", "M98P515", "N30X2.", "M30")
     b.call("cnc_wrmdiprog", len(data), data)
     b.look()

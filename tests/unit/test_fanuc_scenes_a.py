@@ -27,7 +27,7 @@ from support.fanuc_scenes_a import Bench
 
 RECORDED = Path(__file__).parents[1] / "golden" / "fanuc_a"
 AXES = "actf|absolute|machine|relative|distance|skip|srvdelay|accdecdly|rddynamic|wrrelpos"
-OF_AXES = rf"(example\.)?cnc_({AXES})|(struct\.)?(ODBACT|ODBAXIS|ODBDY|IDBWRR)(\.(?!alarm\.bit).*)?"
+OF_AXES = rf"(example\.)?cnc_({AXES})|(struct\.)?(ODBACT|ODBAXIS|ODBDY|IDBWRR)(\..*)?"
 STRUCTURES = (
     r"ODBACT|ODBAXIS|ODBDY|IDBWRR|ODBUP|PRGDIR|ODBNC|ODBPRO|ODBSEQ|ODBMDIP|ODBTOFS|IODBTO|ODBTLINF|IODBPSD|ODBPARAIF|ODBM|IODBMR"
     r"|ODBMVINF"
@@ -59,7 +59,7 @@ SCENES: dict[str, tuple[Callable[[Bench], None], str]] = {
     ),
     "structures": (
         axes.structures,
-        rf"(struct\.)?({STRUCTURES})(\.(?!alarm\.bit|prm_type\.bit).*)?|concept\.(c_types|struct_packing|no_nul_termination)|MAX_AXIS",
+        rf"(struct\.)?({STRUCTURES})(\.(?!prm_type\.bit).*)?|concept\.(c_types|struct_packing|no_nul_termination)|MAX_AXIS",
     ),
     "alarms": (
         axes.alarms,
@@ -124,6 +124,13 @@ SCENES: dict[str, tuple[Callable[[Bench], None], str]] = {
         rf"(example\.)?cnc_({MACROS})(\.err\..*)?|(struct\.)?(ODBM|IODBMR|ODBMVINF)(\..*)?|enum\.(use_no2|macro_type)\..*"
         r"|concept\.macro_.*|concept\.length_argument",
     ),
+    "everywhere": (
+        data.everywhere,
+        rf"(example\.)?cnc_({AXES}|{PARAMETERS}|{OFFSETS}|{MACROS}|rdprogdir|rdproginfo|rdprgnum|rdseqnum|rdexecprog)(\.err\..*)?|mode\..*"
+        r"|(struct\.)?(ODBAXIS|ODBDY|ODBPRO|ODBSEQ|IDBWRR|ODBTOFS|IODBTO|IODBPSD|ODBM|IODBMR|ODBMVINF|ODBTLINF)(\..*)?|paramtype\..*"
+        r"|concept\.(option_none|mode_matrix|macro_local_scope|axis_number)|option\.param_write|MAX_AXIS|ALL_AXES"
+        r"|EW_(LENGTH|NUMBER|ATTRIB|DATA|PROT|NOOPT)",
+    ),
     "handles": (
         data.handles,
         r"EW_(?!NOPMC).*|cnc_(allclibhndl2?|freelibhndl)|concept\.(handle_lifecycle|return_convention|upload_session|download_session)|range\.node"
@@ -136,7 +143,7 @@ SCENES: dict[str, tuple[Callable[[Bench], None], str]] = {
     **{
         name: (
             partial(walk.walk, name),
-            rf"cnc_({AXES}|{PROGRAMS}|{PARAMETERS}|{OFFSETS}|{MACROS})(\.err\.EW_(LENGTH|NUMBER|ATTRIB|DATA|MODE|FUNC))?",
+            rf"cnc_({AXES}|{PROGRAMS}|{PARAMETERS}|{OFFSETS}|{MACROS})(\.err\.EW_(LENGTH|NUMBER|ATTRIB|DATA|MODE|FUNC))?|ODBDY\..*",
         )
         for name in walk.WALKS
     },
