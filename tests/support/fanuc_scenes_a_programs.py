@@ -1,4 +1,6 @@
 """Scenes of a Power Mate's programs: transfer, memory, directory, execution, MDI, and what each state allows."""
+# mypy: disable-error-code="func-returns-value"
+# Acts that follow each other are a tuple of calls.
 
 from __future__ import annotations
 
@@ -62,7 +64,8 @@ def transfers(b: Bench) -> None:
     b.device.select_mode("EDIT")
     b.code("cnc_delall")
     for name in (
-        "O0", "O1", "O01", "O0001", "O9999", "O09999", "O10000", "O00009999", "O123456789", "O", "O-1", "O1.", "N1", "O7X",
+        "O0", "O1", "O01", "O0001", "O9999", "O09999", "O10000", "O00009999", "O123456789", "O", "O-1", "O1.",
+        "N1", "O7X",
         "(C)", ":5", "O5O6", "O8(A)G1", "o9",
     ):  # fmt: skip
         _sent(b, "", stream(name, "M30"))
@@ -83,7 +86,8 @@ def transfers(b: Bench) -> None:
     b.title("what is kept")
     for blocks in (
         ("O5 ( A  B )", "G1 X 1 (C )  Y2", "", " ", "M30"), ("O6",), ("O7", "M30", "O8", "M2", "O9(X)", "M99"),
-        ("O7", "M030", "O8", "M02", "O9", "M00099"), ("O7", "G1", "O8", "G1"), ("O7", "M300", "G1", "M30(M2)", "O8", "(M30)", "M99P5"),
+        ("O7", "M030", "O8", "M02", "O9", "M00099"), ("O7", "G1", "O8", "G1"),
+        ("O7", "M300", "G1", "M30(M2)", "O8", "(M30)", "M99P5"),
         ("O7", "M30", "G1", "O8", "M30"), ("O7", "M30.", "O7", "M30"), ("O7", "G1", "O7", "M30"), ("", "", "O7", "M30"),
     ):  # fmt: skip
         for parameter in (64, 0):
@@ -148,7 +152,8 @@ def rules(b: Bench) -> None:
             ("O77", "M30", "M3"),
         ):
             b.say(
-                f"0000 = {value}, {text(stream(*blocks))}: {_download(b, stream(*blocks))}, MDI {_mdi(b, stream(*blocks))}"
+                f"0000 = {value}, {text(stream(*blocks))}: {_download(b, stream(*blocks))}, MDI "
+                f"{_mdi(b, stream(*blocks))}"
             )
             b.remove(77, 7)
     b.title("3201#2: a registered program, and the selected one")
@@ -168,8 +173,10 @@ def rules(b: Bench) -> None:
     b.title("programs that parameters protect: download, MDI call, delete, search, upload")
     edges = (7999, 8000, 8500, 8999, 9000, 9500, 9999)
     for words, changes in (
-        ("3202 = 0", {}), ("#0", {3202: 1}), ("#4", {3202: 16}), ("all but #0", {3202: 254}), ("all but #4", {3202: 239}),
-        ("password", {3210: 321}), ("password and another key word", {3210: 321, 3211: 322}), ("password and key word", {3210: 321, 3211: 321}),
+        ("3202 = 0", {}), ("#0", {3202: 1}), ("#4", {3202: 16}), ("all but #0", {3202: 254}),
+        ("all but #4", {3202: 239}),
+        ("password", {3210: 321}), ("password and another key word", {3210: 321, 3211: 322}),
+        ("password and key word", {3210: 321, 3211: 321}),
         ("#0 and #4 and key word", {3202: 17, 3210: 5, 3211: 5}), ("key word alone", {3211: 5}),
     ):  # fmt: skip
         for select in (True, False):
@@ -194,7 +201,8 @@ def rules(b: Bench) -> None:
                 b.device.programs.unselect()
                 b.device.select_mode("EDIT")
                 b.say(
-                    f"{words}: delete {deleted}, search {found}, upload {up}, delall {b.cell('cnc_delall')} leaves {_numbers(b)}"
+                    f"{words}: delete {deleted}, search {found}, upload {up}, delall {b.cell('cnc_delall')} "
+                    f"leaves {_numbers(b)}"
                 )
             else:
                 sent = ", ".join(f"{number} {_download(b, stream(f'O{number}', 'M30'))}" for number in edges)
@@ -208,9 +216,14 @@ def rules(b: Bench) -> None:
             opened = b.cell("cnc_dwnstart")
             b.device.protect_key(True, key=key)
             b.device.select_mode("EDIT")
-            codes = f"in an open one {b.cell('cnc_download', stream('O9', 'M30'), 9)} {b.cell('cnc_dwnend')}, start {b.cell('cnc_dwnstart')} {b.cell('cnc_dwnend')}"
+            codes = (
+                f"in an open one {b.cell('cnc_download', stream('O9', 'M30'), 9)} {b.cell('cnc_dwnend')}, "
+                f"start {b.cell('cnc_dwnstart')} {b.cell('cnc_dwnend')}"
+            )
             b.say(
-                f"3290 = {value}, key {key or 'all'}: {opened}, {codes}, delete {b.cell('cnc_delete', 7)}, search {b.cell('cnc_search', 8)}, upload {b.cell('cnc_upstart', 8)}, delall {b.cell('cnc_delall')} leaves {_numbers(b)}"
+                f"3290 = {value}, key {key or 'all'}: {opened}, {codes}, delete {b.cell('cnc_delete', 7)}, "
+                f"search {b.cell('cnc_search', 8)}, upload {b.cell('cnc_upstart', 8)}, delall "
+                f"{b.cell('cnc_delall')} leaves {_numbers(b)}"
             )
     b.title("a memory that gets full")
     for characters in (32, 31, 30):
@@ -358,7 +371,8 @@ def execution(b: Bench) -> None:
         ("search N8, rewind", lambda: (b.code("cnc_seqsrch", 8), b.code("cnc_rewind"))),
         ("search N7, reset", lambda: (b.code("cnc_seqsrch", 7), device.reset())),
         ("search N7, search O1234", lambda: (b.code("cnc_seqsrch", 7), b.code("cnc_search", 1234))),
-        ("search N20, EDIT, MEM", lambda: (b.code("cnc_seqsrch", 20), device.select_mode("EDIT"), device.select_mode("MEM"))),
+        ("search N20, EDIT, MEM",
+        lambda: (b.code("cnc_seqsrch", 20), device.select_mode("EDIT"), device.select_mode("MEM"))),
         ("search N20, off and on", lambda: (b.code("cnc_seqsrch", 20), device.power_cycle())),
         ("search in JOG", lambda: (device.select_mode("JOG"), b.call("cnc_search", 4), b.call("cnc_search", 3))),
         ("search in EDIT", lambda: (device.select_mode("EDIT"), b.call("cnc_search", 4), b.call("cnc_search", 3))),
@@ -381,7 +395,8 @@ def mdi(b: Bench) -> None:
         b.say(f"length {number}: {b.cell('cnc_wrmdiprog', number, longest)}")
     for blocks in (
         ("O7", "G1X1.5F60000", "M30"), ("O1234",), ("O7", ""), ("O7", "M30", "O8", "M30"), ("N1", "M30"), ("O0", "M30"),
-        ("O9999", "G4P1"), ("O10000", "M30"), ("O7", "g1"), ("O7", "G1!"), ("O7", "(A"), ("O7", "M30", "G1"), ("O7", "G1 X2 (A B)"),
+        ("O9999", "G4P1"), ("O10000", "M30"), ("O7", "g1"), ("O7", "G1!"), ("O7", "(A"), ("O7", "M30", "G1"),
+        ("O7", "G1 X2 (A B)"),
     ):  # fmt: skip
         b.say(f"> {text(stream(*blocks))}: {b.cell('cnc_wrmdiprog', len(stream(*blocks)), stream(*blocks))}")
         b.look()
@@ -419,7 +434,8 @@ def mdi(b: Bench) -> None:
     b.say(f"not any more: {b.cell('cnc_wrmdipntr', 2)}, {b.cell('cnc_wrmdipntr', 1)}")
     for words, act in (
         ("start", device.cycle_start), ("reset", device.reset), ("MEM", partial(device.select_mode, "MEM")),
-        ("MDI", partial(device.select_mode, "MDI")), ("off and on", device.power_cycle), ("MDI again", partial(device.select_mode, "MDI")),
+        ("MDI", partial(device.select_mode, "MDI")), ("off and on", device.power_cycle),
+        ("MDI again", partial(device.select_mode, "MDI")),
     ):  # fmt: skip
         b.do(words, act)
         device.advance(600)
@@ -487,9 +503,12 @@ MDI_PROGRAM = stream("O1", "G4", "G4", "M30")
 CALLS: tuple[tuple[str, tuple[object, ...]], ...] = (
     ("rdprgnum", ()), ("rdseqnum", ()), ("rdexecprog", (9,)), ("rdprogdir", (0, 1, 9999, 99)), ("rdproginfo", (0, 12)),
     ("rdmdipntr", ()), ("wrmdipntr", (0,)), ("wrmdiprog", (len(MDI_PROGRAM), MDI_PROGRAM)), ("wrmdipntr", (1,)),
-    ("seqsrch", (30,)), ("seqsrch", (31,)), ("rewind", ()), ("download", (b"\nO5\nM30\n%", 9)), ("dwnend", ()), ("dwnstart", ()),
-    ("download", (b"\nO6\n", 4)), ("dwnend", ()), ("upload", (9,)), ("upstart", (8,)), ("upload", (0,)), ("upload", (3,)), ("upend", ()),
-    ("search", (7,)), ("search", (8,)), ("search", (11,)), ("search", (0,)), ("delete", (11,)), ("delete", (0,)), ("delete", (7,)),
+    ("seqsrch", (30,)), ("seqsrch", (31,)), ("rewind", ()), ("download", (b"\nO5\nM30\n%", 9)), ("dwnend", ()),
+    ("dwnstart", ()),
+    ("download", (b"\nO6\n", 4)), ("dwnend", ()), ("upload", (9,)), ("upstart", (8,)), ("upload", (0,)),
+    ("upload", (3,)), ("upend", ()),
+    ("search", (7,)), ("search", (8,)), ("search", (11,)), ("search", (0,)), ("delete", (11,)),
+    ("delete", (0,)), ("delete", (7,)),
     ("delete", (9001,)), ("delete", (8,)), ("delall", ()),
 )  # fmt: skip
 
@@ -504,7 +523,8 @@ def states(b: Bench) -> None:
             device = b.control()
             registered(
                 device,
-                O7=";G1X9.F3000;N30Y9.;Z9.;M30", O8=";N30M30", O9=";G4P1;N30M0;M30", O10=";N30X1.F9000;G1Q9;M30", O9001=";M99",
+                O7=";G1X9.F3000;N30Y9.;Z9.;M30", O8=";N30M30", O9=";G4P1;N30M0;M30", O10=";N30X1.F9000;G1Q9;M30",
+                O9001=";M99",
             )  # fmt: skip
             device.select_program(7)
             begin(b)
@@ -531,7 +551,8 @@ def _asked(b: Bench) -> tuple[list[str], str]:
         cells.append(b.cell(f"cnc_{name}", *given))
         if (now := _state(b)) != before:
             changes.append(
-                f"{_call_text(name, given)} {'; '.join(f'{a} -> {c}' for a, c in zip(before, now, strict=True) if a != c)}"
+                f"{_call_text(name, given)} "
+                f"{'; '.join(f'{a} -> {c}' for a, c in zip(before, now, strict=True) if a != c)}"
             )
         before = now
     return cells, ", ".join(changes) or "nothing changes"

@@ -1,4 +1,6 @@
 """Feeds in every kind of motion, and walks: any function with any argument, in whatever state a Power Mate comes to."""
+# mypy: disable-error-code="func-returns-value"
+# Acts that follow each other are a tuple of calls.
 
 from __future__ import annotations
 
@@ -15,11 +17,13 @@ from support.power_mate import psd
 
 FEEDS: tuple[tuple[dict[str, Any], tuple[str, ...]], ...] = (
     ({"axes": 4, "rotary": (3, 4)}, (
-        "G1X9.F1234.5", "G1X9.F1234.4", "G1X9.Y9.F1000", "G1A90.F700", "G1A90.B-90.F700", "G1X9.A90.F700", "G0X90.", "G0A90.", "G2X9.Y9.R9.F900",
+        "G1X9.F1234.5", "G1X9.F1234.4", "G1X9.Y9.F1000", "G1A90.F700", "G1A90.B-90.F700", "G1X9.A90.F700",
+        "G0X90.", "G0A90.", "G2X9.Y9.R9.F900",
         "G17G3X-9.Y9.R9.F0.5", "G1X9.F60000", "G4P500", "G95S600M3G1X9.F0.5",
     )),
     ({"axes": 3, "rotary": (3,), "inch_input": True}, (
-        "G1X9.F12.345", "G1X9.F0.123", "G1A90.F700", "G1A90.X1.F70", "G0X90.", "G0A90.", "G21G1X9.F700", "G95S600M3G1X9.F0.05",
+        "G1X9.F12.345", "G1X9.F0.123", "G1A90.F700", "G1A90.X1.F70", "G0X90.", "G0A90.", "G21G1X9.F700",
+        "G95S600M3G1X9.F0.05",
     )),
     ({"axes": 2, "inch_output": True}, ("G1X9.F700", "G20G1X9.F7", "G0X90.")),
     ({"model": "D", "increment": "IS-C", "axes": 1}, ("G1X9.F700.6", "G0X90.")),
@@ -63,7 +67,9 @@ def feeds(b: Bench) -> None:
                 device.cycle_start()
             device.advance(150)
             b.say(
-                f"{words}, {block}: {b.get('cnc_actf').data}, {numbers(b.get('cnc_absolute', -1, 28).data)} machine {numbers(b.get('cnc_machine', -1, 28).data)} to go {numbers(b.get('cnc_distance', -1, 28).data)}"
+                f"{words}, {block}: {b.get('cnc_actf').data}, {numbers(b.get('cnc_absolute', -1, 28).data)} "
+                f"machine {numbers(b.get('cnc_machine', -1, 28).data)} to go "
+                f"{numbers(b.get('cnc_distance', -1, 28).data)}"
             )
 
 
@@ -124,7 +130,8 @@ class Walk:
 
     def _operate(self, device: PowerMate) -> None:
         acts: tuple[tuple[str, Callable[[], Any]], ...] = (
-            ("start", device.cycle_start), ("start", device.cycle_start), ("hold", device.feed_hold), ("reset", device.reset),
+            ("start", device.cycle_start), ("start", device.cycle_start), ("hold", device.feed_hold),
+            ("reset", device.reset),
             ("emergency stop", device.emergency_stop), ("released", lambda: device.emergency_stop(False)),
             ("key 3", lambda: device.protect_key(True, key=3)), ("no key", lambda: device.protect_key(False)),
             ("off and on", device.power_cycle), ("skip", lambda: device.skip_signal(not device.state.skip)),
@@ -187,18 +194,28 @@ class Walk:
             else psd(parameter)
         )
         return one((
-            ("actf",), ("rdprgnum",), ("rdseqnum",), *((name, axis, length) for name in POSITION_CALLS), ("rddynamic", axis, length),
-            ("wrrelpos", length, relative), ("wrrelpos", length, relative), ("dwnstart",), ("dwnstart",), ("download", data, len(data)),
-            ("download", data, one((0, 1, 9, 257))), ("dwnend",), ("dwnend",), ("upstart", number), ("upload", one((0, 1, 5, 99))), ("upend",),
-            ("search", number), ("search", number), ("delete", number), ("delall",) if draw.random() < 0.1 else ("rewind",),
-            ("rdprogdir", one((0, 1, 2, 3)), one((1, 8, 0)), one((9999, 8, 10000)), one((0, 9, 60))), ("rdproginfo", one((0, 1, 2)), one((12, 31, 13))),
-            ("rdexecprog", one((0, 1, 20, 99))), ("wrmdiprog", len(data), data), ("wrmdiprog", len(data), data), ("rdmdipntr",),
-            ("wrmdipntr", one((0, 1, 2, -1))), ("seqsrch", one((10, 20, 30, 81, 5, 0))), ("rdtofs", one((0, 1, 2, 99, 100)), one((0, 1)), length),
+            ("actf",), ("rdprgnum",), ("rdseqnum",), *((name, axis, length) for name in POSITION_CALLS),
+            ("rddynamic", axis, length),
+            ("wrrelpos", length, relative), ("wrrelpos", length, relative), ("dwnstart",), ("dwnstart",),
+            ("download", data, len(data)),
+            ("download", data, one((0, 1, 9, 257))), ("dwnend",), ("dwnend",), ("upstart", number),
+            ("upload", one((0, 1, 5, 99))), ("upend",),
+            ("search", number), ("search", number), ("delete", number),
+            ("delall",) if draw.random() < 0.1 else ("rewind",),
+            ("rdprogdir", one((0, 1, 2, 3)), one((1, 8, 0)), one((9999, 8, 10000)), one((0, 9, 60))),
+            ("rdproginfo", one((0, 1, 2)), one((12, 31, 13))),
+            ("rdexecprog", one((0, 1, 20, 99))), ("wrmdiprog", len(data), data), ("wrmdiprog", len(data), data),
+            ("rdmdipntr",),
+            ("wrmdipntr", one((0, 1, 2, -1))), ("seqsrch", one((10, 20, 30, 81, 5, 0))),
+            ("rdtofs", one((0, 1, 2, 99, 100)), one((0, 1)), length),
             ("wrtofs", one((0, 1, 2, 99, 100)), 0, one((7, 8)), value), ("wrtofsr", length, offset),
-            ("rdtofsr", one((1, 2)), one((0, -1, 2)), one((0, 2, 3)), length), ("rdparam", parameter, axis, length), ("wrparam", length, wanted),
+            ("rdtofsr", one((1, 2)), one((0, -1, 2)), one((0, 2, 3)), length),
+            ("rdparam", parameter, axis, length), ("wrparam", length, wanted),
             ("wrparam", 28, wanted), ("rdparainfo", parameter, one((0, 1, 2))), ("rdmacro", variable, one((9, 10))),
-            ("wrmacro", variable, one((9, 10)), value, one((-1, 0, 3, 9))), ("rdmacror", variable, variable + one((0, 1, -1)), length),
-            ("wrmacror", length, pair), ("setmactype", one((0, 1))), ("getmactype",), ("rdparar", parameter, axis, parameter + 1, one((5, 40))),
+            ("wrmacro", variable, one((9, 10)), value, one((-1, 0, 3, 9))),
+            ("rdmacror", variable, variable + one((0, 1, -1)), length),
+            ("wrmacror", length, pair), ("setmactype", one((0, 1))), ("getmactype",),
+            ("rdparar", parameter, axis, parameter + 1, one((5, 40))),
             ("rdsetr", parameter, axis, parameter + 1, one((5, 40))),
         ))  # fmt: skip
 

@@ -8,7 +8,6 @@ from unittest.mock import patch
 
 from polycnc.controllers.fanuc import fwlib
 from polycnc.controllers.fanuc.fwlib import ALL_AXES
-from polycnc.controllers.fanuc.wire import _client
 from polycnc.servers.focas import FocasControl, Session, load_profile
 from support.fanuc_scenes_a import Bench, registered, short, shown, stream
 
@@ -43,18 +42,27 @@ class Cable:
 
 
 READ: tuple[tuple[str, tuple[Any, ...]], ...] = (
-    ("actf", ()), ("absolute", (-1, 28)), ("absolute", (2, 8)), ("machine", (-1, 28)), ("relative", (-1, 28)), ("distance", (-1, 28)),
-    ("skip", (-1, 28)), ("srvdelay", (-1, 28)), ("accdecdly", (-1, 28)), ("rddynamic", (-1, 118)), ("rddynamic", (3, 38)),
-    ("rdprgnum", ()), ("rdseqnum", ()), ("rdparam", (1320, -1, 28)), ("rdparam", (1320, 2, 8)), ("rdparam", (1620, 3, 6)),
-    ("rdparam", (6080, 0, 5)), ("rdparam", (12, -1, 10)), ("rdmacro", (500, 10)), ("rdmacro", (501, 10)), ("rdmacror", (500, 503, 30)),
+    ("actf", ()), ("absolute", (-1, 28)), ("absolute", (2, 8)), ("machine", (-1, 28)), ("relative", (-1, 28)),
+    ("distance", (-1, 28)),
+    ("skip", (-1, 28)), ("srvdelay", (-1, 28)), ("accdecdly", (-1, 28)), ("rddynamic", (-1, 118)),
+    ("rddynamic", (3, 38)),
+    ("rdprgnum", ()), ("rdseqnum", ()), ("rdparam", (1320, -1, 28)), ("rdparam", (1320, 2, 8)),
+    ("rdparam", (1620, 3, 6)),
+    ("rdparam", (6080, 0, 5)), ("rdparam", (12, -1, 10)), ("rdmacro", (500, 10)), ("rdmacro", (501, 10)),
+    ("rdmacror", (500, 503, 30)),
     ("getmactype", ()),
 )  # fmt: skip
 REFUSED: tuple[tuple[str, tuple[Any, ...]], ...] = (
-    ("absolute", (4, 8)), ("absolute", (0, 8)), ("absolute", (-1, 7)), ("machine", (7, 8)), ("rddynamic", (-1, 21)), ("rddynamic", (5, 38)),
-    ("rdparam", (2, 0, 8)), ("rdparam", (1320, 7, 8)), ("rdparam", (1320, 1, 3)), ("rdmacro", (1000, 10)), ("rdmacro", (500, 9)),
-    ("wrmacro", (1, 10, 5, 0)), ("wrmacro", (500, 10, 5, 9)), ("wrmacro", (500, 9, 5, 0)), ("rdmacror", (149, 500, 600)),
-    ("search", (99,)), ("search", (0,)), ("delete", (99,)), ("delete", (7,)), ("delete", (9001,)), ("upstart", (99,)), ("upload", (3,)),
-    ("upend", ()), ("download", (b"\n", 1)), ("dwnend", ()), ("wrtofs", (1, 0, 8, 1)), ("seqsrch", (1,)), ("rewind", ()), ("rdproginfo", (0, 12)),
+    ("absolute", (4, 8)), ("absolute", (0, 8)), ("absolute", (-1, 7)), ("machine", (7, 8)),
+    ("rddynamic", (-1, 21)), ("rddynamic", (5, 38)),
+    ("rdparam", (2, 0, 8)), ("rdparam", (1320, 7, 8)), ("rdparam", (1320, 1, 3)), ("rdmacro", (1000, 10)),
+    ("rdmacro", (500, 9)),
+    ("wrmacro", (1, 10, 5, 0)), ("wrmacro", (500, 10, 5, 9)), ("wrmacro", (500, 9, 5, 0)),
+    ("rdmacror", (149, 500, 600)),
+    ("search", (99,)), ("search", (0,)), ("delete", (99,)), ("delete", (7,)), ("delete", (9001,)),
+    ("upstart", (99,)), ("upload", (3,)),
+    ("upend", ()), ("download", (b"\n", 1)), ("dwnend", ()), ("wrtofs", (1, 0, 8, 1)), ("seqsrch", (1,)),
+    ("rewind", ()), ("rdproginfo", (0, 12)),
 )  # fmt: skip
 
 
@@ -85,7 +93,7 @@ def wire(b: Bench) -> None:
         if loud:
             heard.append(f"  {way} {data.hex(' ', -4)}")
 
-    with patch.object(_client.socket, "create_connection", lambda *_: Cable(control, note)):
+    with patch("socket.create_connection", lambda *_: Cable(control, note)):
         _, remote = fwlib.cnc_allclibhndl3("control", 8193, 1)
         b.title("bytes, and what is read")
         for name, given in READ:
@@ -122,9 +130,12 @@ def _written(b: Bench, remote: int) -> None:
     record.data[0].mcr_val, record.data[0].dec_val = -15, 1
     record.data[1].mcr_val, record.data[1].dec_val = 0, -1
     for name, given in (
-        ("wrmacro", (500, 10, 31, 4)), ("wrmacro", (502, 10, 0, -1)), ("wrmacror", (18, record)), ("setmactype", (1,)), ("getmactype", ()),
-        ("rdmacro", (510, 10)), ("setmactype", (0,)), ("dwnstart", ()), ("dwnstart", ()), ("download", (data, len(data))), ("dwnend", ()),
-        ("upstart", (12,)), ("upstart", (12,)), ("upload", (10,)), ("upload", (99,)), ("upload", (99,)), ("upend", ()), ("search", (8,)),
+        ("wrmacro", (500, 10, 31, 4)), ("wrmacro", (502, 10, 0, -1)), ("wrmacror", (18, record)),
+        ("setmactype", (1,)), ("getmactype", ()),
+        ("rdmacro", (510, 10)), ("setmactype", (0,)), ("dwnstart", ()), ("dwnstart", ()),
+        ("download", (data, len(data))), ("dwnend", ()),
+        ("upstart", (12,)), ("upstart", (12,)), ("upload", (10,)), ("upload", (99,)), ("upload", (99,)),
+        ("upend", ()), ("search", (8,)),
         ("delete", (12,)), ("delete", (12,)),
     ):  # fmt: skip
         do(name, *given)

@@ -20,6 +20,7 @@ from polycnc.conformance import State, load_conformance
 from polycnc.controllers.fanuc import fwlib
 from support import fanuc_scenes_a_axes as axes
 from support import fanuc_scenes_a_data as data
+from support import fanuc_scenes_a_macros as macros
 from support import fanuc_scenes_a_programs as programs
 from support import fanuc_scenes_a_walk as walk
 from support import fanuc_scenes_a_wire as wire
@@ -120,19 +121,19 @@ SCENES: dict[str, tuple[Callable[[Bench], None], str]] = {
         r"|example\.cnc_(wrparam|wrparas)|units\..*",
     ),
     "macros": (
-        data.macros,
+        macros.macros,
         rf"(example\.)?cnc_({MACROS})(\.err\..*)?|(struct\.)?(ODBM|IODBMR|ODBMVINF)(\..*)?|enum\.(use_no2|macro_type)\..*"
         r"|concept\.macro_.*|concept\.length_argument",
     ),
     "everywhere": (
-        data.everywhere,
+        macros.everywhere,
         rf"(example\.)?cnc_({AXES}|{PARAMETERS}|{OFFSETS}|{MACROS}|rdprogdir|rdproginfo|rdprgnum|rdseqnum|rdexecprog)(\.err\..*)?|mode\..*"
         r"|(struct\.)?(ODBAXIS|ODBDY|ODBPRO|ODBSEQ|IDBWRR|ODBTOFS|IODBTO|IODBPSD|ODBM|IODBMR|ODBMVINF|ODBTLINF)(\..*)?|paramtype\..*"
         r"|concept\.(option_none|mode_matrix|macro_local_scope|axis_number)|option\.param_write|MAX_AXIS|ALL_AXES"
         r"|EW_(LENGTH|NUMBER|ATTRIB|DATA|PROT|NOOPT)",
     ),
     "handles": (
-        data.handles,
+        macros.handles,
         r"EW_(?!NOPMC).*|cnc_(allclibhndl2?|freelibhndl)|concept\.(handle_lifecycle|return_convention|upload_session|download_session)|range\.node"
         r"|cnc_(getmactype|setmactype)",
     ),
