@@ -145,8 +145,8 @@ class Bench:
         code, *rest = getattr(fwlib, name)(self.handle, *given)
         assert code == EW.EW_OK, (name, given, code)
         for record in rest:
-            unused = getattr(record, "dummy", 0)
-            assert not (any(unused) if hasattr(unused, "__len__") else unused), (name, given, record)
+            unused: Any = getattr(record, "dummy", 0)
+            assert unused == 0 or not any(unused), (name, given, record)
         return rest[0] if len(rest) == 1 else rest
 
     def remove(self, *programs: int) -> None:

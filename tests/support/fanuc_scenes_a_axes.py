@@ -110,7 +110,7 @@ def _second_half(b: Bench, device: PowerMate, last: str) -> None:
 
 def _code(b: Bench, name: str, axis: int, length: int) -> str:
     if name == "wrrelpos":
-        return b.cell(f"cnc_{name}", length, fwlib.IDBWRR(type=axis, data=[8, 7, 6, 5, 4, 3]))
+        return b.cell(f"cnc_{name}", length, fwlib.IDBWRR(type=axis, datano=-7, data=[8, 7, 6, 5, 4, 3]))
     return b.cell(f"cnc_{name}", axis, length)
 
 

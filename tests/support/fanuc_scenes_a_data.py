@@ -318,7 +318,7 @@ def _written_ranges(b: Bench) -> None:
     b.say(f"lengths: {runs((n, b.cell('cnc_wrparas', n, part)) for n in range(-1, 10))}")
     b.title("six axes, a value of its own on each, of each kind")
     for number, values in (
-        (12, (1, -2, 3, -128, 127, 6)),
+        (12, (1, -2, 3, -128, -127, -6)),
         (1022, (1, 2, 3, 4, 5, 6)),
         (1620, (10, 20, 30, 400, 50, 4000)),
         (1851, (1, -2, 300, -4000, 5, -9999)),

@@ -124,7 +124,9 @@ def macros(b: Bench) -> None:
     for k, entry in enumerate(record.data):
         entry.mcr_val, entry.dec_val = (k - 250) * 11, k % 9
     b.say(b.cell("cnc_wrmacror", 3006, record))
-    b.say(" ".join(f"{each.mcr_val}/{each.dec_val}" for each in b.get("cnc_rdmacror", 500, 999, 3006).data))
+    found = b.get("cnc_rdmacror", 500, 999, 3006)
+    b.say(f"{found.datano_s} to {found.datano_e}, {len(bytes(found))} bytes")
+    b.say(" ".join(f"{each.mcr_val}/{each.dec_val}" for each in found.data))
     _locals(b)
 
 
@@ -383,6 +385,23 @@ def handles(b: Bench) -> None:
     b.say(
         f"number form of a new one {fwlib.cnc_getmactype(third)[1]}, its upload {short(fwlib.cnc_upload(third, 5)[0])}"
     )
+    b.title("functions that a Power Mate-D does not have")
+    for model, axes in (("H", 1), ("H", 6), ("D", 1), ("D", 2)):
+        b.control(model=model, axes=axes)
+        here = [fwlib.ODBPOS(idata=1, ldata=5)]
+        codes = (
+            f"{name} {b.cell(f'cnc_{name}', *given)}"
+            for name, given in (
+                ("opdi", (1, fwlib.ODBOPDI(axis=1))),
+                ("refpoint", (1, 0, 1)),
+                *((name, (1, 0, 1, 100, here)) for name in ("abspoint", "incpoint")),
+                *((name, (1, 0, 1, here)) for name in ("dwell", "coordre")),
+                ("exebufstat", ()),
+                ("finstate", ()),
+                ("setfin", (fwlib.ODBFIN(),)),
+            )
+        )
+        b.say(f"{model}, {axes} axes: {', '.join(codes)}")
     b.title("each function with a handle that is none")
     b.lines += _answers(b, 0x7777)
     for fault in EW:

@@ -29,7 +29,7 @@ def _download(b: Bench, data: bytes, piece: int = 256) -> str:
 def _upload(b: Bench, number: int, piece: int = 0xFFFF) -> str:
     if (code := b.code("cnc_upstart", number)) != EW.EW_OK:
         return short(code)
-    pieces = []
+    pieces: list[bytes] = []
     while not pieces or pieces[-1]:
         record, count = b.get("cnc_upload", piece)
         assert len(record.data) == count
@@ -470,6 +470,7 @@ def _other_handle(b: Bench, name: str, *given: int) -> None:
     getattr(fwlib, name)(other, *given)
 
 
+MDI_PROGRAM = stream("O1", "G4", "G4", "M30")
 STATES: dict[str, Callable[[Bench], object]] = {
     "at rest": lambda b: None,
     "O7 moves": _run_to,
@@ -494,12 +495,26 @@ STATES: dict[str, Callable[[Bench], object]] = {
     "an upload of another handle": lambda b: _other_handle(b, "cnc_upstart", 8),
     "a download that was stopped": lambda b: (b.code("cnc_dwnstart"), b.device.feed_hold()),
     "a download that was reset": lambda b: (b.code("cnc_dwnstart"), b.device.reset()),
+    "nothing selected": lambda b: b.device.programs.unselect(),
+    "nothing registered": lambda b: (b.device.select_mode("EDIT"), b.code("cnc_delall")),
+    "an MDI program": lambda b: (b.device.select_mode("MDI"), b.device.mdi.put(MDI_PROGRAM)),
+    "an upload, then alarm 000": lambda b: (b.code("cnc_upstart", 8), b.device.raise_alarm(0)),
+    "a download, then alarm 101": lambda b: (b.code("cnc_dwnstart"), b.device.raise_alarm(101)),
+    "a download and an upload, then off and on": lambda b: (
+        b.code("cnc_dwnstart"),
+        b.code("cnc_upstart", 8),
+        b.device.power_cycle(),
+    ),
+    "a download, then key 3 and a background edit": lambda b: (
+        b.code("cnc_dwnstart"),
+        b.device.protect_key(True, key=3),
+        b.device.programs.edit(8, background=True),
+    ),
     "key 3": lambda b: b.device.protect_key(True, key=3),
     "9000 protected": lambda b: b.code("cnc_wrparam", 5, psd(3202, 0, cdata=16)),
 }  # fmt: skip
 MODES = [mode for mode in PowerMateMode if mode is not PowerMateMode.NONE]
 FEW = [PowerMateMode.MDI, PowerMateMode.MEM, PowerMateMode.EDIT, PowerMateMode.JOG, PowerMateMode.RMT]
-MDI_PROGRAM = stream("O1", "G4", "G4", "M30")
 CALLS: tuple[tuple[str, tuple[object, ...]], ...] = (
     ("rdprgnum", ()), ("rdseqnum", ()), ("rdexecprog", (9,)), ("rdprogdir", (0, 1, 9999, 99)), ("rdproginfo", (0, 12)),
     ("rdmdipntr", ()), ("wrmdipntr", (0,)), ("wrmdiprog", (len(MDI_PROGRAM), MDI_PROGRAM)), ("wrmdipntr", (1,)),

@@ -39,6 +39,7 @@ PROGRAMS = (
     r"|wrmdiprog|rdmdipntr|wrmdipntr|seqsrch|rewind"
 )
 PARAMETERS = r"rdparam|wrparam|rdparar|wrparas|rdparainfo|rdsetr|wrsets"
+OF_PARAMETERS = r"(struct\.)?(IODBPSD|ODBPARAIF)(\..*)?|paramtype\..*"
 MACROS = r"rdmacro|wrmacro|rdmacror|wrmacror|rdmacroinfo|getmactype|setmactype"
 OFFSETS = r"rdtofs|wrtofs|rdtofsr|wrtofsr|rdtofsinfo"
 TRANSFERS = (
@@ -105,13 +106,13 @@ SCENES: dict[str, tuple[Callable[[Bench], None], str]] = {
     ),
     "parameters": (
         data.parameters,
-        rf"(example\.)?cnc_({PARAMETERS})(\.err\..*)?|(struct\.)?(IODBPSD|ODBPARAIF)(\..*)?|paramtype\..*|enum\.(prm_attr|param_axis)\..*"
+        rf"(example\.)?cnc_({PARAMETERS})(\.err\..*)?|{OF_PARAMETERS}|enum\.(prm_attr|param_axis)\..*"
         r"|concept\.(axis_param_rule|bit_param_rmw|ps000_after_write|sparse_parameters|length_argument|axis_number)"
         r"|ncparam\.(1020|132[01]|608.)|EW_(LENGTH|NUMBER|ATTRIB|DATA|PROT)",
     ),
     "ranges": (
         data.ranges,
-        rf"(example\.)?cnc_({PARAMETERS})(\.err\..*)?|paramtype\..*|enum\.(prm_attr|param_axis)\..*|ODBPARAIF\.prm_type\.bit[3-7].*"
+        rf"(example\.)?cnc_({PARAMETERS})(\.err\..*)?|{OF_PARAMETERS}|enum\.(prm_attr|param_axis)\..*"
         r"|concept\.(param_record_stream|axis_param_rule|range_growth|setting_subset|option_none|length_argument)|option\.param_write"
         r"|ALL_AXES|MAX_AXIS|EW_(LENGTH|NUMBER|ATTRIB|DATA|NOOPT|PROT)",
     ),
@@ -134,7 +135,7 @@ SCENES: dict[str, tuple[Callable[[Bench], None], str]] = {
     ),
     "handles": (
         macros.handles,
-        r"EW_(?!NOPMC).*|cnc_(allclibhndl2?|freelibhndl)|concept\.(handle_lifecycle|return_convention|upload_session|download_session)|range\.node"
+        r"concept\.power_mate_d_limit|EW_(?!NOPMC).*|cnc_(allclibhndl2?|freelibhndl)|concept\.(handle_lifecycle|return_convention|upload_session|download_session)|range\.node"
         r"|cnc_(getmactype|setmactype)",
     ),
     "wire": (
@@ -153,8 +154,16 @@ CONFORMANCE = load_conformance()
 ROWS = [row.id for row in CONFORMANCE.rows("fanuc") if CONFORMANCE.state(row.id) is not State.NOT_APPLICABLE]
 
 
+# What every look reads.
+LOOK = re.compile(
+    rf"(example\.)?cnc_({AXES.removesuffix('|wrrelpos')}|rdprgnum|rdseqnum|rdexecprog|rdmdipntr|rdprogdir|rdproginfo)"
+    r"|format\.prog.*|(ODBAXIS|ODBDY|ODBACT|ODBPRO|ODBSEQ|ODBMDIP|ODBNC|PRGDIR)\..*|enum\.(rdprog.*|axis\..*)|concept\.dynamic_snapshot"
+)
+LOOKS = ("moves", "transfers", "rules", "directory", "execution", "mdi", "macros", *walk.WALKS)
+
+
 def _scene(name: str) -> Any:
-    shown = re.compile(SCENES[name][1])
+    shown = re.compile(f"{SCENES[name][1]}|{LOOK.pattern}" if name in LOOKS else SCENES[name][1])
     rows = [row for row in ROWS if shown.fullmatch(row.removeprefix("fanuc."))]
     return pytest.param(name, marks=pytest.mark.covers(*rows))
 
