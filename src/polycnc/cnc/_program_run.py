@@ -181,6 +181,7 @@ class ProgramRun:
         self._moment.state = RunState.RESET
         if self._runner.row["state"] == kernel.IDLE:
             return
+        self._runner.row["tag"] = self.reading.tag  # a block without motion stays the last one
         self._moment.dropping = True
         self._moment.hold, self._moment.hold_later = True, False
         self._runner.path_hold.apply()

@@ -300,5 +300,5 @@ class _BlockPart:
 
 
 def _left(motion: AxisMotion, at: float) -> float:
-    """Return what is left to where an axis that is moved by hand goes, 0 where it has no end."""
-    return 0.0 if motion.target is None else motion.target - at
+    """Return what is left to where an axis that is moved by hand goes; 0 of a jog, which has no end but a limit."""
+    return 0.0 if motion.target is None or motion.kind is ManualKind.JOG else motion.target - at

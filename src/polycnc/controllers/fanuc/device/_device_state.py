@@ -116,11 +116,13 @@ class MdiState:
 
 @dataclass(slots=True)
 class DeviceState:
-    """State of a Power Mate; its parts hold theirs."""
+    """State of a Power Mate; its parts hold theirs. `increment` and `inch_output` are 1004 and 1001#0 at power-on."""
 
     signals: SignalState
     axis_motion: AxisMotionState
     inch: bool
+    increment: int = 0
+    inch_output: bool = False
     mode: PowerMateMode = PowerMateMode.MEM
     cursor: int = 0
     mdi: MdiState = field(default_factory=MdiState)

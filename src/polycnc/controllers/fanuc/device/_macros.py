@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from polycnc.cnc import Timer
+from polycnc.cnc import RunState, Timer
 from polycnc.controllers.fanuc.data._macro_variables import SharedMacros
 from polycnc.controllers.fanuc.data._parameters import Parameters
 from polycnc.controllers.fanuc.data._tool_offsets import ToolOffsets
@@ -74,7 +74,8 @@ class Macros:
     def local(self, number: int) -> Value:
         """Return a local variable of the macro that is being executed, of the main program at rest."""
         channel = self._power.control.channel_status()
-        block = channel.block if channel.active or channel.interrupted else None
+        going = channel.active or channel.interrupted or channel.run_state is RunState.ALARM
+        block = channel.block if going else None
         return self.language.locals_of(() if block is None else block.stack)[number]
 
     def at_rest(self, number: int) -> Value:

@@ -20,10 +20,15 @@ class Units:
         self._state = state
         self._config = config
 
+    def switched_on(self) -> None:
+        """Begin with the power: the units that parameters 1001 and 1004 say count until it is switched off."""
+        self._state.increment = self._parameters.value(1004)
+        self._state.inch_output = self._parameters.bit(1001, 0)
+
     @property
     def increment(self) -> Increment:
         """The increment system (parameter 1004)."""
-        value = self._parameters.value(1004)
+        value = self._state.increment
         return Increment.IS_A if value & 1 else Increment.IS_C if value & 2 else Increment.IS_B
 
     @property
@@ -34,7 +39,7 @@ class Units:
     @property
     def inch_output(self) -> bool:
         """Whether the machine counts in inch (1001#0)."""
-        return self._parameters.bit(1001, 0)
+        return self._state.inch_output
 
     @property
     def axis_names(self) -> tuple[str, ...]:

@@ -31,6 +31,7 @@ def call(body: Callable[Concatenate[Link, P], R]) -> Callable[Concatenate[int, P
         if isinstance(link, RemoteLink):
             result: R = carry_out(link, body.__name__, given)
             return result
+        link.reach()
         try:
             return body(link, *given, **named)
         except Refused as refusal:

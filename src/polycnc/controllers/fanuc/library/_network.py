@@ -45,26 +45,21 @@ class Link:
         return self.node.device
 
     def read(self, *thing: Hashable) -> PowerMate:
-        """Return the control for a call that reads `thing`; time passes before it if that is read again.
-
-        Raises:
-            Refused: The node has a fault.
-        """
-        self._reach()
+        """Return the control for a call that reads `thing`; time passes before it if that is read again."""
         self.node.polling.read(self.node.device, thing)
         return self.node.device
 
     def command(self) -> PowerMate:
-        """Return the control for a call that reads nothing.
+        """Return the control for a call that reads nothing."""
+        self.node.polling.call(self.node.device)
+        return self.node.device
+
+    def reach(self) -> None:
+        """Look whether the control answers: before anything else, as what is wrong with a call is for it to say.
 
         Raises:
             Refused: The node has a fault.
         """
-        self._reach()
-        self.node.polling.call(self.node.device)
-        return self.node.device
-
-    def _reach(self) -> None:
         if self.node.fault is not EW.EW_OK:
             raise Refused(self.node.fault)
         if self.upload is not None and self.upload.power_ups != self.device.power_ups:

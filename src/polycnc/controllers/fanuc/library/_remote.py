@@ -298,13 +298,12 @@ def cnc_rdparam(link: RemoteLink, number: int, axis: int, length: int) -> tuple[
     _check(kind in _FIELDS, EW.EW_PROTOCOL)
     made = IODBPSD(datano=number, type=axis)
     name, sign = _FIELDS[kind]
-    if axis != ALL_AXES:
-        values = values[:1]
-    _check(length >= _AXIS_HEADER + _WIDTHS[name] * len(values), EW.EW_LENGTH)
+    most = (length - _AXIS_HEADER) // _WIDTHS[name]  # nothing is known of more axes than the control has
+    _check(most >= 1, EW.EW_LENGTH)
     values = [value - 256 if sign and value >= sign else value for value in values]
     if axis == ALL_AXES:
         room = getattr(made.u, f"{name}s")
-        for k, value in enumerate(values[: len(room)]):
+        for k, value in enumerate(values[: min(most, len(room))]):
             room[k] = value
     else:
         setattr(made.u, name, values[0])
