@@ -46,7 +46,16 @@ def own(tmp_path: Path, text: str) -> Dialect:
 
 def test_the_default_is_din() -> None:
     assert DEFAULT_DIALECT == load_dialect().name == "din"
-    assert set(DIALECTS) == {"din", "fanuc", "fanuc-lathe", "haas", "grbl", "linuxcnc", "bosch"}
+    assert set(DIALECTS) == {
+        "din",
+        "fanuc",
+        "fanuc-lathe",
+        "fanuc-lathe-b",
+        "haas",
+        "grbl",
+        "linuxcnc",
+        "bosch",
+    }
     for name in DIALECTS:
         assert load_dialect(name).name == name
     din = load_dialect("din")

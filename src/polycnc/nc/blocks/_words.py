@@ -28,6 +28,7 @@ _NOT_YET = (
 )
 _CYCLE_OF_A = 90.0
 _SYSTEM_A = {91.0: "U and W are incremental", 95.0: "feed per revolution is G99"}
+_SYSTEM_B = "fanuc-lathe-b"
 """What codes of other code systems for lathes are in system A, which has a cycle for their absolute positions."""
 _REMARKS = re.compile(rb"\([^)\r\n]*\)")
 _COOLANT_ON = (MAction.COOLANT_MIST, MAction.COOLANT_FLOOD)
@@ -135,7 +136,7 @@ class BlockWords:
 def _other_dialects(word: Word, own: Dialect) -> str:
     """Return what to do with a code that the dialect does not know; it names the shipped dialects that carry it out."""
     if word.letter == "G" and word.value in _SYSTEM_A and own.g_action(_CYCLE_OF_A) is Action.TURN_CYCLE:
-        return f"The dialect is G code system A: {_SYSTEM_A[word.value]}."
+        return f"The dialect is G code system A: {_SYSTEM_A[word.value]}. System B is dialect {_SYSTEM_B}."
     having = []
     for name in DIALECTS:
         dialect = load_dialect(name)

@@ -406,7 +406,7 @@ class DialectTables(NamedTuple):
     selects: bool
 
 
-_SHIPPED = ("din", "fanuc", "fanuc-lathe", "haas", "grbl", "linuxcnc", "bosch")
+_SHIPPED = ("din", "fanuc", "fanuc-lathe", "fanuc-lathe-b", "haas", "grbl", "linuxcnc", "bosch")
 DEFAULT_DIALECT = "din"
 DIALECTS: tuple[str, ...] = _SHIPPED
 """Names of the shipped dialects."""
