@@ -530,7 +530,7 @@ def test_pecking_a_face_in_several_places() -> None:
     ]
 
 
-@pytest.mark.parametrize("end", ["Z2.", "Z2.0000001"])
+@pytest.mark.parametrize("end", ["Z2.", "Z2.0000000001"])
 def test_pecking_without_depth_goes_across_only(end: str) -> None:
     found = turned(f"G74 X44. {end} P3000 R0.25 F0.1\n")
     assert [each for each in found if "Z" in each] == []
