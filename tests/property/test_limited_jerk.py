@@ -147,7 +147,7 @@ def test_a_limited_look_ahead_keeps_the_jerk(depth: int) -> None:
 def test_a_short_look_ahead_does_not_creep_to_the_end_of_a_block(
     seed: int, length: float | None, jerk: float
 ) -> None:
-    """A corner may take the acceleration of the whole block if it is passed fast; at a crawl it takes next to nothing."""
+    """A corner may take the acceleration of a whole block if it is passed fast, and next to none at a crawl."""
     near, stopping = (
         random_path(seed, PathSettings(jerk=jerk, depth=2), length, stops=stops, most=120)
         for stops in (False, True)

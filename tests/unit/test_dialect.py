@@ -283,6 +283,9 @@ def test_the_dialect_of_a_program() -> None:
         ).name
 
     assert of("part.tap", "bosch") == "bosch"  # what is said counts first
+    for text, remarks in (("G0 X1 ; to the edge\n", True), ("G0 X1;\n(a; remark)\n", False)):
+        found = dialect_for(ProgramText.from_text(text, "part.tap"))
+        assert (found.name, found.text.semicolon_comments) == ("fanuc", remarks)
     for name in DIALECTS:
         for extension in load_dialect(name).extensions:
             assert of(f"folder/part{extension}") == name

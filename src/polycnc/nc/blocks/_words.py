@@ -179,6 +179,8 @@ class WordSorter:
             elif word.letter == "M" and word.index is None:
                 self._add_m(word, words, fail)
             else:
+                if word.letter == "N" and "N behind words" in self._dialect.refuses:
+                    _refuse_late_number(word, block, fail)
                 _add_value(word, words, fail, two_tools=self._dialect.two_tools)
 
     def _add_g(self, word: Word, words: BlockWords, text: ProgramText, fail: Fail) -> None:
@@ -270,6 +272,11 @@ def _blocks_with(code: str, text: ProgramText) -> int:
     pattern = rb"[Gg][ \t]*0*" + re.escape(code.encode()) + rb"(?![0-9.])"
     content = _REMARKS.sub(lambda found: b" " * len(found[0]), text.content)
     return len({content.rfind(b"\n", 0, found.start()) for found in re.finditer(pattern, content)})
+
+
+def _refuse_late_number(word: Word, block: Block, fail: Fail) -> None:
+    if word is not block.words[0]:
+        raise fail("the block number N stands behind other words", "A block number begins its line.", word)
 
 
 def _add_value(word: Word, words: BlockWords, fail: Fail, *, two_tools: bool) -> None:

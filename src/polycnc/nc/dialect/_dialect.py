@@ -61,6 +61,7 @@ Refused: TypeAlias = Literal[
     "half a centre",
     "compensation outside X Y and X Z",
     "feeds of before",
+    "N behind words",
 ]
 _ACTIONS = {action.title: action for action in Action}
 
