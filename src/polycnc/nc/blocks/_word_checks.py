@@ -144,10 +144,12 @@ def refuse_rest(block: BlockContext, g: GWord) -> None:
 
 def _no_axis(block: BlockContext, name: str, word: Word) -> ProgramError:
     names = ", ".join(block.after.axis_names)
-    turns = block.dialect.diameter_axes and not block.dialect.incremental
-    hint = (
-        f"The dialect has ways by G91: write G91 and {_WAYS[name]}, then G90."
-        if turns and _WAYS.get(name) in block.after.axis_names
-        else f"Its axes are {names}; remove the word, or choose another machine."
-    )
+    hint = f"Its axes are {names}; remove the word, or choose another machine."
+    if _WAYS.get(name) in block.after.axis_names and not block.dialect.incremental:
+        hint = (
+            f"The dialect has ways by G91: write G91 and {_WAYS[name]}, then G90."
+            if block.dialect.diameter_axes
+            else f"Its axes are {names}; choose another machine, or for a lathe, where {name} goes along {_WAYS[name]}, "
+            "--dialect fanuc-lathe."
+        )
     return block.problem(f"there is no axis '{name}' on machine '{block.after.machine.name}'", hint, word)
