@@ -149,7 +149,7 @@ def _no_axis(block: BlockContext, name: str, word: Word) -> ProgramError:
         hint = (
             f"The dialect has ways by G91: write G91 and {_WAYS[name]}, then G90."
             if block.dialect.diameter_axes
-            else f"Its axes are {names}; choose another machine, or for a lathe, where {name} goes along {_WAYS[name]}, "
-            "--dialect fanuc-lathe."
+            else f"Its axes are {names}; choose another machine, or for a lathe, where {name} goes along "
+            f"{_WAYS[name]}, --dialect fanuc-lathe."
         )
     return block.problem(f"there is no axis '{name}' on machine '{block.after.machine.name}'", hint, word)
