@@ -141,6 +141,21 @@ def test_a_limited_look_ahead_keeps_the_jerk(depth: int) -> None:
         assert highest_jerk(state) <= 2e5 * ROUNDING, f"seed {seed}"
 
 
+@pytest.mark.parametrize(
+    ("seed", "length", "jerk"), [(1, 0.002, 2e5), (7, 0.002, 2e5), (143, None, 2e5), (109, 0.002, 1e4)]
+)
+def test_a_short_look_ahead_does_not_creep_to_the_end_of_a_block(
+    seed: int, length: float | None, jerk: float
+) -> None:
+    """A corner may take the acceleration of a whole block if it is passed fast, and next to none at a crawl."""
+    near, stopping = (
+        random_path(seed, PathSettings(jerk=jerk, depth=2), length, stops=stops, most=120)
+        for stops in (False, True)
+    )
+    tail = int(near.paths.row[0]["tail"])
+    assert skip(near, 0, tail) < skip(stopping, 0, tail)
+
+
 @pytest.mark.parametrize(("jerk", "depth"), [(1e4, 0), (1e5, 0), (1e6, 0), (1e5, 3)])
 def test_override_hold_and_late_blocks_keep_the_jerk_and_the_end(jerk: float, depth: int) -> None:
     for seed in seeds(0, 24):

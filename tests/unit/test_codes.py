@@ -24,7 +24,7 @@ BY_STEPS = {  # of their own: other words ask for them too, or they only change 
     Group.RADIUS_COMPENSATION, Group.SPINDLE_MODE,
 }  # fmt: skip
 ALWAYS = set("NODFHMST")  # any block may have them
-MACHINES = {"fanuc-lathe": "lathe2", "linuxcnc": "vmc3"}
+MACHINES = {"fanuc-lathe": "lathe2", "fanuc-lathe-b": "lathe2", "linuxcnc": "vmc3"}
 
 
 def test_every_code_is_carried_out_by_one_function() -> None:

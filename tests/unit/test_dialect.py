@@ -46,7 +46,16 @@ def own(tmp_path: Path, text: str) -> Dialect:
 
 def test_the_default_is_din() -> None:
     assert DEFAULT_DIALECT == load_dialect().name == "din"
-    assert set(DIALECTS) == {"din", "fanuc", "fanuc-lathe", "haas", "grbl", "linuxcnc", "bosch"}
+    assert set(DIALECTS) == {
+        "din",
+        "fanuc",
+        "fanuc-lathe",
+        "fanuc-lathe-b",
+        "haas",
+        "grbl",
+        "linuxcnc",
+        "bosch",
+    }
     for name in DIALECTS:
         assert load_dialect(name).name == name
     din = load_dialect("din")
@@ -274,6 +283,9 @@ def test_the_dialect_of_a_program() -> None:
         ).name
 
     assert of("part.tap", "bosch") == "bosch"  # what is said counts first
+    for text, remarks in (("G0 X1 ; to the edge\n", True), ("G0 X1;\n(a; remark)\n", False)):
+        found = dialect_for(ProgramText.from_text(text, "part.tap"))
+        assert (found.name, found.text.semicolon_comments) == ("fanuc", remarks)
     for name in DIALECTS:
         for extension in load_dialect(name).extensions:
             assert of(f"folder/part{extension}") == name
@@ -296,6 +308,9 @@ def test_the_dialect_of_a_program() -> None:
         ("%\nO0002\nT0101\nG0 X20. Z5.\n", "fanuc-lathe", "O0002 in line 2"),
         ("O2\nT0101 M6\nG0 X20. Y5.\n", "fanuc", "O2 in line 1"),
         ("O2\nT101\nG0 X20. Z5.\n", "fanuc-lathe", "O2 in line 1"),
+        ("N10 T2\nG71 P70 Q110 U0.4\n", "fanuc-lathe", "G71 P70 Q110 in line 2"),
+        ("N10 G28 U0 W0\nT0202\n", "fanuc-lathe", "G28 U0 in line 1"),
+        ("G28 X0 Y0 U0 V0\nG73 X1 Z-1 Q1 R1\n", "din", ""),
         ("O2 ; shaft\nT0101 ; rough\nG0 X20. Z5. ; start\n", "fanuc-lathe", "O2 in line 1"),
         ("O3 (G15 H1, P1=7)\n(P2=12, IF P2 IS LONG)\nG15\nG33 Z-4. E2.5\n", "fanuc", "O3 in line 1"),
         ("(a)\n#<depth> = 5\n", "linuxcnc", "#<d in line 2"),
@@ -337,6 +352,9 @@ def test_the_dialect_is_guessed_and_says_why(program: str, name: str, reason: st
         ("G0 X40 Z2\nG85 NLAP1 D4\n", "OSP language", 2),
         ("G0 X40 Z2\nNAT03\n", "OSP language", 2),
         ("%PLATE,MX--\nN10 G90\n", "Fagor language", 1),
+        ("%PLATE,MX,\nN10 G90\n", "Fagor language", 1),
+        ("G28\n<Slice> Blank\n", "language of 3D printers", 2),
+        ("G28\nM140 S60\n", "language of 3D printers", 2),
         ("N10 G90\nN20 (IF P7 GT 3 GOTO N50)\nN50 M30\n", "Fagor language", 2),
         ("N20 (P7 = P2 + P3)\n", "Fagor language", 1),
         ("G21\nG92 E0\n", "language of 3D printers", 2),

@@ -62,6 +62,9 @@ REFUSALS = [
     ("M3 S100\nG76 P1 Z-9 I-1 J.000001 K1", "too many passes"),
     ("M3 S100\nG76 P-1 Z-9 I-1 J.2 K1", "the pitch is not above zero"),
     ("G38.2 X3", "a feed move without a feed"),
+    ("F100 G1 N10 X3", "the block number N stands behind"),
+    ("#1=2\nG0 N10 X#1", "the block number N stands behind"),
+    ("#1=2 N10", "the block number N stands behind"),
     ("F100 G38.2 X0", "to where the probe is"),
     ("G55\nG10 L2 P2 R30\nG18 G2 X3 Z1 R5 F100", "an arc outside the plane that the work offset turns"),
 ]

@@ -139,7 +139,11 @@ def test_codes_of_another_system_for_lathes_are_remarked(code: str, said: str, t
     ]
     path.write_text("O1\nT0101\nG95\nM30\n")
     (error,) = inspect(path, dialect="fanuc-lathe").errors
-    assert error.hint == "The dialect is G code system A: feed per revolution is G99."
+    assert (
+        error.hint
+        == "The dialect is G code system A: feed per revolution is G99. System B is dialect fanuc-lathe-b."
+    )
+    assert not inspect(path, dialect="fanuc-lathe-b").errors
 
 
 def test_cutting_with_the_spindle_at_rest_or_without_a_tool() -> None:

@@ -205,7 +205,7 @@ def test_g10_shifts_the_work_coordinates() -> None:
         ("G10 P3 R5. C2.", "R and C both change the radius"),
         ("G10 P10003 C-2.", "the radius is negative"),
         ("G10 P10003 Q10", "Q10 is not the place of a tip"),
-        ("G10 P3 Y2.", "G10 P3 without a value"),
+        ("G10 P3 Y2.", "there is no axis 'Y' on machine 'test'"),
         ("G10 P5000 X1.", "there is no offset P5000"),
         ("G10 L10 P1 X1.", "G10 L10 is not supported yet"),
         ("G10 P3 X1. I5.", "'I' cannot be combined with G10"),
@@ -302,6 +302,65 @@ def test_the_clamp_is_no_speed_and_holds_for_surface_speed_only() -> None:
     assert refusal("G50 S0\n", config=LATHE, dialect="fanuc-lathe").endswith("clamp is not above zero")
     din = "G18 G95 G92 S500\nG96 S150 M3\nG0 X2 Z5\nG1 Z0 F0.2\n"
     assert moves(din, config=LATHE)[-1] == "line Z0 F100"
+
+
+# --- G code system B
+
+_CUTS = "N1 G0 X40.\nG1 Z-9. F0.2\nX44. Z-12.\nN2 X52.\n"
+_CUTS_B = _CUTS.replace("X44. Z-12.", "G91 X4. Z-3.").replace("N2", "N2 G90")
+
+
+@pytest.mark.parametrize(
+    ("a", "b"),
+    [
+        ("G1 X40. Z-3.5 F0.2\nU-5. W-1.5\nX30.", "G90 G1 X40. Z-3.5 F0.2\nG91 X-5. Z-1.5\nG90 X30."),
+        ("G98 G1 X40. F150\nG99 Z-3. F0.2", "G94 G1 X40. F150\nG95 Z-3. F0.2"),
+        ("G90 X45. Z-30. R-3.5 F0.25\nX40.\nU-15.", "G77 X45. Z-30. R-3.5 F0.25\nX40.\nG91 X-15."),
+        ("G92 X27. Z-20. F2.\nX26.", "G78 X27. Z-20. F2.\nX26."),
+        ("G94 X20. Z-1.5 F0.2\nZ-3.", "G79 X20. Z-1.5 F0.2\nG98 Z-3."),
+        ("G32 Z-38. F1.5\nU6. W-40.", "G33 Z-38. F1.5\nG91 X6. Z-40."),
+        ("G50 X60. Z5.\nG0 X50.", "G92 X60. Z5.\nG0 X50."),
+        ("G50 S900\nG96 S300\nG1 X20. F0.2", "G92 S900\nG96 S300\nG1 X20. F0.2"),
+        ("G28 U0 W-1.", "G91 G28 X0 Z-1."),
+        (f"G71 U4. R0.5\nG71 P1 Q2 U1. W0.1 F0.3\n{_CUTS}G70 P1 Q2",) * 2,
+        (
+            f"G71 U4. R0.5\nG71 P1 Q2 U1. W0.1 F0.3\n{_CUTS}G70 P1 Q2",
+            f"G71 U4. R0.5\nG71 P1 Q2 U1. W0.1 F0.3\n{_CUTS_B}G70 P1 Q2",
+        ),
+        ("G75 R0.2\nG75 X44. Z-2. P3000 Q2000 F0.1",) * 2,
+        ("G76 P010060 Q100 R0.05\nG76 X27.4 Z-20. P1300 Q500 F2.",) * 2,
+        ("G10 P3 X0.25 Z-1.\nT0303\nG0 X40. Z3.", "G10 P3 X0.25 Z-1.\nT0303\nG0 X40. Z3."),
+        ("G10 P3 U0.25 W-1.\nT0303\nG0 X40. Z3.", "G91 G10 P3 X0.25 Z-1. R0\nG90 T0303\nG0 X40. Z3."),
+        ("G10 L2 P1 X1. Z2.\nG10 L2 P1 U1.\nG0 X40.", "G10 L2 P1 X1. Z2.\nG91 G10 L2 P1 X1.\nG90 G0 X40."),
+    ],
+)
+def test_system_b_says_the_same_by_other_codes(a: str, b: str) -> None:
+    start = f"{TURN}G0 X50. Z2.\n"
+    found = moves(f"{start}{b}\n", config=LATHE, dialect="fanuc-lathe-b")
+    assert len(found) > 2
+    assert found == moves(f"{start}{a}\n", config=LATHE, dialect="fanuc-lathe")
+
+
+def test_system_b_is_system_a_but_for_the_codes_that_differ() -> None:
+    a, b = load_dialect("fanuc-lathe"), load_dialect("fanuc-lathe-b")
+    differ = {code for code in a.g.keys() | b.g.keys() if a.g.get(code) != b.g.get(code)}
+    assert differ == {"32", "33", "50", "77", "78", "79", "90", "91", "92", "94", "95", "98", "99"}
+    others = b.model_copy(update={"name": a.name, "description": a.description, "g": a.g})
+    assert others.model_copy(update={"incremental": a.incremental}) == a
+
+
+@pytest.mark.parametrize(
+    ("block", "hint"),
+    [
+        ("G28 U0", "The dialect has ways by G91: write G91 and X, then G90."),
+        ("G10 P3 W1.", "The dialect has ways by G91: write G91 and Z, then G90."),
+        ("G1 B5. F1", "Its axes are X, Z; remove the word, or choose another machine."),
+    ],
+)
+def test_system_b_has_no_addresses_of_ways(block: str, hint: str) -> None:
+    (error,) = polycnc.check(f"G97 S500 M3\n{block}\n", LATHE, "fanuc-lathe-b")
+    assert error.what.startswith("there is no axis '")
+    assert error.hint == hint
 
 
 # --- single cuts
@@ -469,6 +528,13 @@ def test_pecking_a_face_in_several_places() -> None:
         *(*pecks, "rapid Z2 stop", "rapid X22 stop", *pecks, "rapid Z2 stop"),
         *("rapid X21 stop", *pecks, "rapid Z2 stop", "rapid X25 stop"),
     ]
+
+
+@pytest.mark.parametrize("end", ["Z2.", "Z2.0000000001"])
+def test_pecking_without_depth_goes_across_only(end: str) -> None:
+    found = turned(f"G74 X44. {end} P3000 R0.25 F0.1\n")
+    assert [each for each in found if "Z" in each] == []
+    assert found == turned(f"G74 X44. {end} P3000 F0.1\n")
 
 
 def test_grooving_with_relief() -> None:

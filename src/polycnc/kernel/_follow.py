@@ -117,6 +117,15 @@ def _aim(ramps: Floats, way: float, speed: float, accel: float, count: int, coas
 
 
 @compiled
+def _sheds(speed: float, rate: float, carried: float, jerk: float, way: float) -> bool:
+    """Tell whether an acceleration is taken back to `carried` within a way."""
+    if abs(rate) <= carried:
+        return True
+    gone, _, _ = moved(speed, rate, -math.copysign(jerk, rate), (abs(rate) - carried) / jerk)
+    return bool(gone <= way)
+
+
+@compiled
 def _is_safe(
     seg: Segments, paths: Paths, g: int, count: int, s: float, speed: float, rate: float, dt: float
 ) -> bool:
@@ -130,12 +139,9 @@ def _is_safe(
     most = speed + 0.5 * rate * rate / jerk if rate > 0.0 else speed
     if rate > 0.0 and count > path["head"] and most > row["cap"] * SLACK:
         return False
-    carried = min(geo[EASE], geo[REDUCED])
-    carries = True  # what acceleration is left at the end is not too much there
-    if abs(rate) > carried:
-        time = (abs(rate) - carried) / jerk
-        way, _, _ = moved(speed, rate, -math.copysign(jerk, rate), time)
-        carries = way + most * dt <= left - geo[ZONE_OUT]
+    # What acceleration is left beside the corner and at the end is not too much there.
+    carries = _sheds(speed, rate, geo[REDUCED], jerk, left - geo[ZONE_OUT] - most * dt)
+    carries = carries and _sheds(speed, rate, geo[EASE], jerk, left - most * dt)
     if carries and _can_ease(seg, paths, g, count, left, speed, rate, most, dt):
         return True
     eased = speed + 0.5 * rate * abs(rate) / jerk

@@ -9,7 +9,7 @@ from typing import TypeAlias
 
 NOT_EXECUTED = ", which is an alarm where it is executed"
 """The end of the message on a statement that has not been executed, and would be an alarm."""
-CODE_SYSTEM = ": programs are read in G code system A"
+CODE_SYSTEM = ": this program is read in G code system A, --dialect fanuc-lathe-b reads system B"
 """The end of the message on a code that means something else in other code systems."""
 _SHOWN = "MSG: "
 

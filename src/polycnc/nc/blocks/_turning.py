@@ -291,7 +291,7 @@ def peck(start: Point, numbers: Pecking) -> list[Step]:
             steps.append(Step((x, level)))
             if level != levels[-1] and numbers.retract_mm:
                 steps.append(Step((x, level - way * numbers.retract_mm), rapid=True))
-        if numbers.relief_mm and number:
+        if levels and numbers.relief_mm and number:
             x -= side * numbers.relief_mm
             steps.append(Step((x, levels[-1]), rapid=True))
         steps.append(Step((x, start[1]), rapid=True))

@@ -20,10 +20,10 @@ from polycnc.nc.modal._actions import Action, Family, Group
 from polycnc.nc.modal._modal import MOTION, MOTION_LINEAR
 
 _MODES = {
-    Action.TURN_CYCLE: "X and Z are absolute anyway, U and W are incremental",
-    Action.FACE_CYCLE: "feed per minute is G98, feed per revolution G99",
+    (Action.TURN_CYCLE, "90"): "X and Z are absolute anyway, U and W are incremental",
+    (Action.FACE_CYCLE, "94"): "feed per minute is G98, feed per revolution G99",
 }
-"""What other code systems mean by the codes of cycles, as it is said here."""
+"""What other code systems mean by codes that are cycles in system A, as it is said there."""
 
 
 def begin(block: BlockContext, g: GWord) -> None:
@@ -82,7 +82,7 @@ def moves(block: BlockContext) -> list[QueueItem]:
 def _remark_system(block: BlockContext) -> None:
     """Tell of a cycle that is begun without a position: programs of another code system mean a mode by its code."""
     g = block.words.g.get(Group.MOTION)
-    instead = None if g is None else _MODES.get(g.action)
+    instead = None if g is None else _MODES.get((g.action, g.code))
     if g is not None and instead:
         block.note(f"G{g.code} without X and Z begins a cutting cycle ({instead}){CODE_SYSTEM}")
 

@@ -1,6 +1,7 @@
 """G10 of turning controls: the work coordinate shift, work offsets, and offsets of tools with the place of their tip.
 
-X, Y, Z set a value, U, V, W add to it; R sets the nose radius, C adds to it (FANUC B-63524EN, 14.5.2).
+X, Y, Z set a value, U, V, W add to it; R sets the nose radius, C adds to it (FANUC B-63524EN, 14.5.2). Where G91 makes
+positions ways (G code system B), X, Y, Z and R add.
 """
 
 from __future__ import annotations
@@ -9,7 +10,7 @@ from polycnc.nc.blocks._block import BlockContext
 from polycnc.nc.blocks._tables import ADDITIONAL_OFFSETS, COMMON_OFFSET, additional_offset
 from polycnc.nc.blocks._word_checks import refuse_rest
 from polycnc.nc.blocks._words import GWord, whole_number
-from polycnc.nc.modal._modal import length_scale
+from polycnc.nc.modal._modal import ABSOLUTE, length_scale
 
 GEOMETRY = 10_000
 """What P counts from where geometry offsets are set, not wear."""
@@ -82,9 +83,9 @@ def _set_tool(block: BlockContext, g: GWord, number: int, fields: tuple[str, str
         changes[fields[2]] = radius
     if (tip := block.words.take("Q")) is not None:
         changes["tip"] = whole_number(tip, "the place of a tip", block.problem, _LAST_TIP)
+    refuse_rest(block, g)
     if not changes:
         raise block.problem(f"G{g.code} P{number} without a value", "Add X or U, Z or W, R, or Q.", g.word)
-    refuse_rest(block, g)
     block.after.tables.set_tool(number, **changes)
 
 
@@ -103,7 +104,7 @@ def _value(block: BlockContext, name: str, old: float) -> float | None:
         )
     if way is not None:
         return old + way * scale
-    return None if value is None else value * scale
+    return None if value is None else value * scale + _base(block, old)
 
 
 def _radius(block: BlockContext, old: float) -> float | None:
@@ -113,4 +114,9 @@ def _radius(block: BlockContext, old: float) -> float | None:
         raise block.problem("R and C both change the radius", "Write one of them.", block.words.first("C"))
     if more is not None:
         return old + more * scale
-    return None if value is None else value * scale
+    return None if value is None else value * scale + _base(block, old)
+
+
+def _base(block: BlockContext, old: float) -> float:
+    """Return what a value is added to: the old one after G91."""
+    return 0.0 if block.after.modal.whole[ABSOLUTE] else old

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
+from polycnc.errors import ProgramError
 from polycnc.nc.blocks._block import BlockContext
 from polycnc.nc.blocks._channel_state import of_another_channel
 from polycnc.nc.blocks._words import GWord, code_text
@@ -25,6 +26,8 @@ _BELONGS_TO = {
     "H": "tool length compensation (G43, G44)",
     "F": "a dwell that has its time already, or a feed",
 }
+_WAYS = {"U": "X", "V": "Y", "W": "Z"}
+"""The axes whose ways have addresses of their own where no mode says what positions are."""
 _WORDS_OF_THEIR_OWN = (Group.MOTION, Group.NON_MODAL, Group.DWELL, Group.ROTATION)
 _NUMBER_ENDS = frozenset(bytes((each,)) for each in b"0123456789.")
 
@@ -110,12 +113,7 @@ def refuse_unused(block: BlockContext) -> None:
                 word,
             )
         elif word.letter in _AXIS_LETTERS:
-            names = ", ".join(block.after.axis_names)
-            raise block.problem(
-                f"there is no axis '{name}' on machine '{block.after.machine.name}'",
-                f"Its axes are {names}; remove the word, or choose another machine.",
-                word,
-            )
+            raise _no_axis(block, name, word)
         elif name in _BELONGS_TO:
             raise block.problem(
                 f"'{name}' has no meaning in this block", f"It belongs to {_BELONGS_TO[name]}.", word
@@ -137,5 +135,21 @@ def refuse_unused(block: BlockContext) -> None:
 def refuse_rest(block: BlockContext, g: GWord) -> None:
     """Refuse what is left in the block before anything is written that cannot be taken back."""
     for name, word in block.words.unused():
-        if name not in block.dialect.ignored_addresses:
-            raise block.problem(f"'{name}' cannot be combined with G{g.code}", "Remove it.", word)
+        if name in block.dialect.ignored_addresses:
+            continue
+        if word.letter in _AXIS_LETTERS and name not in block.after.axis_names:
+            raise _no_axis(block, name, word)
+        raise block.problem(f"'{name}' cannot be combined with G{g.code}", "Remove it.", word)
+
+
+def _no_axis(block: BlockContext, name: str, word: Word) -> ProgramError:
+    names = ", ".join(block.after.axis_names)
+    hint = f"Its axes are {names}; remove the word, or choose another machine."
+    if _WAYS.get(name) in block.after.axis_names and not block.dialect.incremental:
+        hint = (
+            f"The dialect has ways by G91: write G91 and {_WAYS[name]}, then G90."
+            if block.dialect.diameter_axes
+            else f"Its axes are {names}; choose another machine, or for a lathe, where {name} goes along "
+            f"{_WAYS[name]}, --dialect fanuc-lathe."
+        )
+    return block.problem(f"there is no axis '{name}' on machine '{block.after.machine.name}'", hint, word)

@@ -28,6 +28,7 @@ _NOT_YET = (
 )
 _CYCLE_OF_A = 90.0
 _SYSTEM_A = {91.0: "U and W are incremental", 95.0: "feed per revolution is G99"}
+_SYSTEM_B = "fanuc-lathe-b"
 """What codes of other code systems for lathes are in system A, which has a cycle for their absolute positions."""
 _REMARKS = re.compile(rb"\([^)\r\n]*\)")
 _COOLANT_ON = (MAction.COOLANT_MIST, MAction.COOLANT_FLOOD)
@@ -135,7 +136,7 @@ class BlockWords:
 def _other_dialects(word: Word, own: Dialect) -> str:
     """Return what to do with a code that the dialect does not know; it names the shipped dialects that carry it out."""
     if word.letter == "G" and word.value in _SYSTEM_A and own.g_action(_CYCLE_OF_A) is Action.TURN_CYCLE:
-        return f"The dialect is G code system A: {_SYSTEM_A[word.value]}."
+        return f"The dialect is G code system A: {_SYSTEM_A[word.value]}. System B is dialect {_SYSTEM_B}."
     having = []
     for name in DIALECTS:
         dialect = load_dialect(name)
@@ -178,6 +179,8 @@ class WordSorter:
             elif word.letter == "M" and word.index is None:
                 self._add_m(word, words, fail)
             else:
+                if word.letter == "N" and "N behind words" in self._dialect.refuses:
+                    _refuse_late_number(word, block, fail)
                 _add_value(word, words, fail, two_tools=self._dialect.two_tools)
 
     def _add_g(self, word: Word, words: BlockWords, text: ProgramText, fail: Fail) -> None:
@@ -269,6 +272,11 @@ def _blocks_with(code: str, text: ProgramText) -> int:
     pattern = rb"[Gg][ \t]*0*" + re.escape(code.encode()) + rb"(?![0-9.])"
     content = _REMARKS.sub(lambda found: b" " * len(found[0]), text.content)
     return len({content.rfind(b"\n", 0, found.start()) for found in re.finditer(pattern, content)})
+
+
+def _refuse_late_number(word: Word, block: Block, fail: Fail) -> None:
+    if word is not block.words[0]:
+        raise fail("the block number N stands behind other words", "A block number begins its line.", word)
 
 
 def _add_value(word: Word, words: BlockWords, fail: Fail, *, two_tools: bool) -> None:

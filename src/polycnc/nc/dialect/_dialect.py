@@ -61,6 +61,7 @@ Refused: TypeAlias = Literal[
     "half a centre",
     "compensation outside X Y and X Z",
     "feeds of before",
+    "N behind words",
 ]
 _ACTIONS = {action.title: action for action in Action}
 
@@ -406,7 +407,7 @@ class DialectTables(NamedTuple):
     selects: bool
 
 
-_SHIPPED = ("din", "fanuc", "fanuc-lathe", "haas", "grbl", "linuxcnc", "bosch")
+_SHIPPED = ("din", "fanuc", "fanuc-lathe", "fanuc-lathe-b", "haas", "grbl", "linuxcnc", "bosch")
 DEFAULT_DIALECT = "din"
 DIALECTS: tuple[str, ...] = _SHIPPED
 """Names of the shipped dialects."""

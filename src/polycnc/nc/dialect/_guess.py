@@ -52,8 +52,10 @@ _UNREADABLE = (
         _NUMBER
         + rb"(?:V[CS][0-9]+[ \t]*=|G15[ \t]+H[0-9]|CALL[ \t]+O[A-Z]|(?:G85[ \t]+)?NLAP[0-9]|NAT[0-9])",
     ),
-    _sign(_FAGOR, _LINE + rb"%[A-Z0-9_ ]+,MX--?"),
+    _sign(_FAGOR, _LINE + rb"%[A-Z0-9_ ]+,MX[-,]"),
     _sign(_PRINTER, rb"(?<![A-Z])G[ \t]*92[ \t]+E[-.0-9]"),
+    _sign(_PRINTER, _LINE + rb"<Slice>"),
+    _sign(_PRINTER, _LINE + rb"M1(?:04|09|40|90)[ \t]+S[0-9]"),
     _sign(_PRINTER, rb"(?<![A-Z])G[ \t]*0?1[ \t](?:[XYZF][-.0-9]+[ \t]+)+E[-.0-9]"),
     _sign("language of ShopBot tools", _LINE + rb"(?:[JM][XYZABS2-5]|VS)[ \t]*,[ \t]*[-.0-9]"),
     _sign("NCP language of isel machines", rb"\A\n[ \t]*IMF_PBL"),
@@ -75,6 +77,8 @@ _SIGNS = (
     _sign("linuxcnc", rb"(?<![A-Z])G[ \t]*64[ \t]*P[ \t]*[0-9.]"),
     _sign("bosch", _LINE + rb"[0-9]+[ \t]+(?:(?:" + _CPL_WORDS + rb")\b|" + _CPL_ASSIGNS + rb")"),
     _sign("grbl", _LINE + rb"\$(?:[0-9]+=|[HXCGIN#$]|J=)"),
+    _sign("fanuc-lathe", rb"(?<![A-Z])G[ \t]*7[0-2][ \t]*P[0-9]+[ \t]*Q[0-9]+"),
+    _sign("fanuc-lathe", rb"(?<![A-Z])G[ \t]*28[ \t]*(?:G[ \t]*0+[ \t]*)?U[-+.0-9]+[ \t]*(?=[W\r\n(;])"),
     _sign("haas", rb"(?<![A-Z])G[ \t]*150[ \t]+(?:[A-Z][-+0-9. \t]*)*P[ \t]*[0-9]"),
     _sign("fanuc", rb"(?<![A-Z])G[ \t]*6[56](?:\.1)?[ \t]*(?:[A-Z][-+0-9. \t]*)*P[ \t]*[0-9]"),
     _sign("fanuc", _NUMBER + rb"(?:/[0-9]?[ \t]*)?(?:" + _MACRO + rb")"),
@@ -84,7 +88,7 @@ _SIGNS = (
 )
 _CODES, _, _NUMBERED = _SIGNS[-3:]
 _BRACKETS = re.compile(rb"\([^)\r\n]*\)")
-_REMARK = re.compile(rb";[ \t]*[A-Za-z]{3,}")
+_REMARK = re.compile(rb";[ \t]*(?:[A-Za-z]{3}|[A-Za-z]{1,2}[ \t]+[A-Za-z]{2})")
 """A remark after a semicolon, which ends a block on controls whose programs have nothing but a number."""
 _TURRET = re.compile(rb"(?<![A-Z])T[0-9]{3,4}(?![0-9])", re.IGNORECASE)
 _MILL = re.compile(
@@ -116,7 +120,7 @@ def choose_dialect(text: ProgramText, explicit: str | Path | Dialect | None = No
     extension = Path(text.name).suffix.lower()
     for name in DIALECTS:
         if extension and extension in load_dialect(name).extensions:
-            return ChosenDialect(load_dialect(name))
+            return ChosenDialect(_with_remarks(load_dialect(name), b"\n" + text.content[:_LOOKED_AT]))
     words = _words(text)
     default = load_dialect(DEFAULT_DIALECT)
     for sign in _UNREADABLE:
@@ -128,19 +132,29 @@ def choose_dialect(text: ProgramText, explicit: str | Path | Dialect | None = No
             return ChosenDialect(default, problem=_unreadable(text, sign, found))
     for sign in _SIGNS:
         if found := sign.pattern.search(words):
-            remarks = sign in (_CODES, _NUMBERED) and _REMARK.search(_BRACKETS.sub(b"", with_comments))
+            remarks = sign in (_CODES, _NUMBERED) and _has_remarks(with_comments)
             turret = _TURRET.search(words) and not _MILL.search(words)
             lathe = _TURNING.get(sign.name) if turret else None
             if remarks and lathe is None and sign is _NUMBERED:
                 continue
             dialect = load_dialect(lathe or sign.name)
             if remarks:
-                dialect = dialect.model_copy(
-                    update={"text": dialect.text.model_copy(update={"semicolon_comments": True})}
-                )
+                dialect = _with_remarks(dialect, with_comments)
             line = text.position(_begin(found)).line
             return ChosenDialect(dialect, f"{_shown(text, found)} in line {line}")
     return ChosenDialect(default)
+
+
+def _has_remarks(text: bytes) -> bool:
+    return _REMARK.search(_BRACKETS.sub(b"", text)) is not None
+
+
+def _with_remarks(dialect: Dialect, text: bytes) -> Dialect:
+    """Return a dialect whose blocks a semicolon ends, with remarks after semicolons where a text has some."""
+    rules = dialect.text
+    if not rules.semicolon_ends or rules.semicolon_comments or not _has_remarks(text):
+        return dialect
+    return dialect.model_copy(update={"text": rules.model_copy(update={"semicolon_comments": True})})
 
 
 def dialect_for(text: ProgramText, explicit: str | Path | Dialect | None = None) -> Dialect:

@@ -109,7 +109,7 @@ QUEUE_FULL = 2
 
 RESERVE = 8  # slots that the ordinary path may need for one block
 
-_F, _G, _M, _R = (ord(letter) - LETTER_A for letter in "FGMR")
+_F, _G, _M, _N, _R = (ord(letter) - LETTER_A for letter in "FGMNR")
 _F_BIT = 1 << _F
 _RAPID = int(Action.RAPID)
 _LINEAR = int(Action.LINEAR)
@@ -333,6 +333,8 @@ def _read(
             groups |= group
             continue
         bit = 1 << letter
+        if letter == _N and w > first:
+            return False  # some dialects refuse a block number behind other words
         if seen & bit or not _is_plain(letter, value, points[w], least_input, work):
             return False
         seen |= bit

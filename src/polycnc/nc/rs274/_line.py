@@ -125,6 +125,10 @@ class LineReader:
             elif char == "$":
                 self._spindle()
             elif char.isalpha() or char in POLAR_LETTERS:
+                if char in "nN" and (line.words or line.settings or line.o_word):
+                    raise Flaw(
+                        at, "the block number N stands behind other words", "A block number begins its line."
+                    )
                 self._at += 1
                 line.words.append((char.upper(), self.value(), at))
             else:
