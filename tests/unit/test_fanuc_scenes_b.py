@@ -11,12 +11,19 @@ from pathlib import Path
 
 import pytest
 
-from support import fanuc_scenes_b_motion, fanuc_scenes_b_panel
+from support import (
+    fanuc_scenes_b_history,
+    fanuc_scenes_b_motion,
+    fanuc_scenes_b_panel,
+    fanuc_scenes_b_state,
+)
 from support.fanuc_scenes_b import Bench
 
 RECORDED = Path(__file__).parents[1] / "golden" / "fanuc_b"
 SCENES: dict[str, Callable[[Bench], None]] = {
-    act.__name__: act for part in (fanuc_scenes_b_panel, fanuc_scenes_b_motion) for act in part.SCENES
+    act.__name__: act
+    for part in (fanuc_scenes_b_panel, fanuc_scenes_b_motion, fanuc_scenes_b_state, fanuc_scenes_b_history)
+    for act in part.SCENES
 }
 
 
