@@ -79,6 +79,7 @@ class Bench:
         self.kept: dict[str, tuple[bytes, dict[str, str]]] = {}
         self.memory: dict[tuple[str, int], bytes] = {}
         self.records = 0, 0
+        self.noted: dict[str, str] = {}
         before = list(self.lines)
         self.look()
         self.lines = before

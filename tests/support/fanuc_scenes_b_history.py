@@ -6,7 +6,7 @@ from datetime import datetime
 from typing import Any
 
 from polycnc.controllers.fanuc import fwlib
-from support.fanuc_scenes_b import Bench
+from support.fanuc_scenes_b import Bench, plain, record
 
 Entry = tuple[int, int, int, int]
 """The number of an entry, of a signal's name and of its address, and the mask of its bits."""
@@ -31,12 +31,39 @@ def watch(b: Bench, *entries: Entry, count: int | None = None) -> None:
 
 
 def shown(b: Bench) -> None:
-    """Write down the table if it has changed."""
+    """Write down the entries of the table that have changed since the last time."""
     found = b.library.cnc_rdhissgnl(b.handle)[1]
-    rows = [f"{each.ent_no}:{each.sig_name}.{each.sig_no}/{each.mask_pat:02x}" for each in found.data]
-    text = f"    table {found.datano} {found.type}: {' '.join(rows)}"
-    if text not in b.lines[-400:]:
-        b.lines.append(text)
+    rows = {each.ent_no: f"{each.sig_name}.{each.sig_no}/{each.mask_pat:02x}" for each in found.data}
+    before = b.noted
+    b.noted = {f"entry {entry}": row for entry, row in rows.items()} | {
+        "head": f"{found.datano} {found.type}"
+    }
+    changed = [f"{name} is {row}" for name, row in b.noted.items() if before.get(name) != row]
+    if changed:
+        b.lines.append(f"    {', '.join(changed)}")
+
+
+def records(b: Bench, name: str, first: int, last: int, length: int) -> None:
+    """Read records, and write down what each kind of them has."""
+    found = getattr(b.library, name)(b.handle, first, last, length)
+    code, his = found if isinstance(found, tuple) else (found, None)
+    text = ""
+    if his is not None and code == 0:
+        each = (
+            [record(one) for one in his.data]
+            if name == "cnc_rdophistry"
+            else [plain(one) for one in his.alm_his]
+        )
+        text = f"{his.s_no} {his.type} {his.e_no}: {', '.join(each)}"
+    b.lines.append(f"{name}({first}, {last}, {length}) {fwlib.EW(code).name} {text}".rstrip())
+
+
+def counts(b: Bench) -> None:
+    """Read how many records there are, and the first ones."""
+    b.ask("cnc_rdophisno")
+    b.ask("cnc_rdalmhisno")
+    records(b, "cnc_rdophistry", 1, 1, 14)
+    records(b, "cnc_rdalmhistry", 1, 1, 54)
 
 
 def history_table(b: Bench) -> None:
@@ -140,22 +167,20 @@ def history_records(b: Bench) -> None:
         ("cnc_rdophistry", 1, 1, 14),
         ("cnc_rdalmhistry", 1, 1, 54),
     )
-    for read in reads:
-        b.ask(*read)
+    counts(b)
     b.ask("cnc_stopophis")
-    for read in reads:
-        b.ask(*read)
+    counts(b)
     b.control.history.press_key(33)
     b.control.raise_alarm(1009, "WHILE STOPPED")
+    b.control.select_mode("EDIT")
+    b.control.pmc.write("G", 100, b"\x21")
     b.control.advance(5)
     b.ask("cnc_stopophis")
-    for read in reads[:2]:
-        b.ask(*read)
+    counts(b)
     b.ask("cnc_startophis")
     b.ask("cnc_startophis")
     b.control.advance(5)
-    for read in reads:
-        b.ask(*read)
+    counts(b)
     b.control.history.press_key(34)
     b.control.raise_alarm(430, "AFTER", axis=3)
     b.control.advance(5)
@@ -169,7 +194,7 @@ def history_records(b: Bench) -> None:
             length = 6 + size * max(last - first + 1, 0)
             for more in (0, 1, -1, size, -size):
                 if 0 <= length + more:
-                    b.ask(name, first, last, length + more)
+                    records(b, name, first, last, length + more)
     b.ask("cnc_startophis")
     b.title("cleared alone, running and stopped; what is wrong clears nothing")
     for slct in (2, -1, 32767):

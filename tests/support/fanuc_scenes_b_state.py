@@ -229,8 +229,8 @@ N1 G0 X1. Y-2.5 Z3
 N20 G1 X-4.75 F1200
 N300 G18 G2 X4. Z9. R8.5 F80.5
 G91 G1 Y.5
-N4000 G90 G19 G3 Y-1. Z7. J-2. K1.
-M3 S450 T7 D4
+N4000 G90 G19 G3 Y-1. Z7. J-1.5 K-2.
+G1 M3 S450 T7 D4
 M8
 G43 H3 Z12.
 /N5 G44 H4 Z11.
@@ -241,7 +241,7 @@ G94 M98 P131 L2
 G17 X[2*3] F600. M9
 #1=7.5
 G20 X.1 F10.
-G21 Y2. E3 Q4. B5 A-6. C7 U8 V9 W10
+G21 Y2. A-6. U8. V-9.125
 N99999 M5
 M30"""
 
@@ -256,14 +256,14 @@ def modal(b: Bench) -> None:
     b.program(130, PROGRAM, start=False)
     b.control.control.set_switches(single_block=True)
     for _ in range(26):
-        b.control.cycle_start()
+        b.act("cycle_start")
         b.run(2)
-        b.run(4000)
+        b.run(15000)
     b.act("reset")
     b.title("one at a time, within a block")
     b.control.control.set_switches(single_block=False)
-    b.control.cycle_start()
-    b.control.advance(700)
+    b.act("cycle_start")
+    b.control.advance(2200)
     for block in range(3):
         for kind in (*range(21), *range(100, 127), *range(200, 206)):
             found = b.library.cnc_modal(b.handle, kind, block)[1]

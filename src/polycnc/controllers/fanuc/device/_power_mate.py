@@ -104,8 +104,15 @@ class PowerMate:
         ports = parameters, self.tool_offsets, state.signals, state.macros, note
         variables = partial(PowerMateVariables, power, *ports)
         self.custom_macros = Macros(self.macros, power, parameters, variables, state.macros)
-        pressed = self.cycle_start, self.feed_hold, self.reset, self.emergency_stop, self.select_mode
-        buttons = Buttons(*pressed, protect=state.turn_key)
+        buttons = Buttons(
+            start=self.cycle_start,
+            hold=self.feed_hold,
+            go_on=lambda: self.axis_motion.go_on(),
+            reset=self.reset,
+            emergency_stop=self.emergency_stop,
+            select_mode=self.select_mode,
+            protect=state.turn_key,
+        )
         read = power, parameters, units, self.positions, self.custom_macros, state
         self.signals = Signals(*read, buttons, lambda address: self.panel.image(address), note)
         self.panel = Panel(store, self.signals, state, self.select_mode)
@@ -180,6 +187,7 @@ class PowerMate:
             raise ControlError(
                 Refusal.HELD, "feed hold is given (*SP)", hint="Take feed hold away, at G8#5 or on the panel."
             )
+        self.axis_motion.go_on()
         channel = self.control.channels[0]
         self.remote.before_start(name_of(self.programs.selected) if self.programs.selected else None)
         if not channel.interrupted:
@@ -194,6 +202,7 @@ class PowerMate:
         """Press the stop button: what moves brakes and stands, an open download is stopped."""
         if self.transfer is not None:
             self.transfer.stop()
+        self.axis_motion.hold()
         try:
             self.control.feed_hold()
         except ControlError as error:

@@ -52,6 +52,7 @@ class Buttons(NamedTuple):
 
     start: Callable[[], None]
     hold: Callable[[], None]
+    go_on: Callable[[], None]
     reset: Callable[[], None]
     emergency_stop: Callable[[bool], None]
     select_mode: Callable[[PowerMateMode], None]
@@ -257,6 +258,8 @@ class Signals:
             self._buttons.emergency_stop(not new & ESP)
         if old & ~new & SP:
             self._buttons.hold()
+        if new & ~old & SP:
+            self._buttons.go_on()
         if new & ~old & ERS:
             self._buttons.reset()
 
