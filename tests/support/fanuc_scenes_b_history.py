@@ -146,6 +146,21 @@ def history_signals(b: Bench) -> None:
     )
     b.control.advance(2)
     b.histories()
+    b.title("switches of the control that are signals")
+    watch(b, (7, G, 10, 0xFF), (8, G, 11, 0x80), (9, G, 4, 0xFF))
+    for name, arguments in (
+        ("select_mode", ("JOG",)), ("select_mode", ("REF",)), ("emergency_stop", (True,)), ("emergency_stop", (False,)),
+        ("protect_key", (True,)), ("signals.set_jog_override", (33.25,)),
+    ):  # fmt: skip
+        b.act(name, *arguments)
+        b.control.advance(1)
+        b.histories()
+    b.control.control.set_overrides(feed=0.44, rapid=0.5)
+    b.control.control.set_switches(single_block=True, block_delete=frozenset({1}))
+    b.control.advance(1)
+    b.act("power_cycle")
+    b.control.advance(1)
+    b.histories()
 
 
 def history_records(b: Bench) -> None:

@@ -269,6 +269,9 @@ def direct_at_work(b: Bench) -> None:
     command(b, "refpoint", 2, 1, 1)
     command(b, "refpoint", 9, 1, 1)
     signal(b, 1, 1)
+    signal(b, 3, 1)
+    command(b, "dwell", 2, 1, 1, positions((1, 5)))
+    signal(b, 3, 0)
     b.parameters(1320, 5000, 6000, 7000)
     b.parameters(1321, -5100, -6100, -7100)
     for axis, value in ((1, 9000), (2, -9000), (3, 9000), (1, -9000), (2, 9000), (3, -9000)):

@@ -97,9 +97,10 @@ class AxisMotion:
 
     @property
     def is_ready(self) -> bool:
-        """Whether no alarm and no emergency stop would drop a command at once."""
+        """Whether no alarm, emergency stop or reset would drop a command at once."""
         control = self._power.control
-        return control.emergency is Emergency.OFF and not shown(control.alarms.active)
+        stopped = self._signals.reset_is_on or control.emergency is not Emergency.OFF
+        return not stopped and not shown(control.alarms.active)
 
     def has_room(self, path: int) -> bool:
         """Whether a path (from 1) takes a block now: a buffer is free, and no program has the axes."""

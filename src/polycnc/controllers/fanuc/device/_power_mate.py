@@ -99,7 +99,9 @@ class PowerMate:
         self.positions = Positions(power, units, state.axis_motion)
         self.skip = SkipSignal(power, self.positions, state, self.axes)
         self.tool_offsets = ToolOffsets(store, power, units, offsets)
-        self.history = Histories(store, power, lambda address: self.signals.f(address), state.sampling)
+        self.history = Histories(
+            store, power, lambda letter, at: self.signals.byte(letter, at), state.sampling
+        )
         note = self.history.note_signal
         ports = parameters, self.tool_offsets, state.signals, state.macros, note
         variables = partial(PowerMateVariables, power, *ports)
@@ -180,13 +182,15 @@ class PowerMate:
         """Start the program of MEM, MDI or RMT (`remote`) at a line or the cursor, or go on with an interrupted one.
 
         Raises:
-            ControlError: As `cnc.Control.cycle_start`; feed hold is given; nothing sends a program in RMT.
+            ControlError: As `cnc.Control.cycle_start`; feed hold or reset is given; nothing sends a program in RMT.
         """
         self.power.take_over()
         if self.state.signals.hold_is_on:
             raise ControlError(
                 Refusal.HELD, "feed hold is given (*SP)", hint="Take feed hold away, at G8#5 or on the panel."
             )
+        if self.state.signals.reset_is_on:
+            raise ControlError(Refusal.HELD, "external reset is given (ERS)", hint="Take it away, at G8#7.")
         self.axis_motion.go_on()
         channel = self.control.channels[0]
         self.remote.before_start(name_of(self.programs.selected) if self.programs.selected else None)
@@ -340,11 +344,11 @@ class PowerMate:
 
     def _begin_signals(self) -> None:
         """Let signals, panel and histories begin with the power."""
+        self.history.switched_on()
         self.axis_motion.clear()
         self.signals.clear()
         self.pmc.clear()
         self.panel.switched_on()
-        self.history.switched_on()
 
     def _switch_on(self, before: Machine | None) -> None:
         languages = (self.custom_macros.language,) if self.has_option(MACRO_OPTION) else ()

@@ -116,6 +116,10 @@ class Signals:
         """Take note that the state and the control behind it have gone back."""
         self._applied = self._power.control.overrides
 
+    def byte(self, letter: str, address: int) -> int:
+        """Return the byte of a G or F address."""
+        return self.g(address) if letter == "G" else self.f(address)
+
     # ------------------------------------------------------------------ G addresses
 
     def g(self, address: int) -> int:

@@ -51,7 +51,7 @@ def _values(device: PowerMate, count: int, data: bytes) -> tuple[tuple[int, int]
 
 
 def _order(link: Link, path: int, block: Block) -> tuple[EW, ODBEXEC]:
-    """Put a command into a buffer, after all checks; an alarm or the emergency stop would drop it: EW_REJECT."""
+    """Put a command into a buffer, after all checks; EW_REJECT where an alarm or a stop would drop it."""
     device = link.device
     _check_enabled(device)
     if not all(device.parameters.value(8010, axis) for axis in block.axes):
