@@ -176,12 +176,6 @@ def history_records(b: Bench) -> None:
         b.control.advance(1200)
     b.histories()
     b.title("stopped: nothing is noted, and nothing of it later; only then histories can be read")
-    reads = (
-        ("cnc_rdophisno",),
-        ("cnc_rdalmhisno",),
-        ("cnc_rdophistry", 1, 1, 14),
-        ("cnc_rdalmhistry", 1, 1, 54),
-    )
     counts(b)
     b.ask("cnc_stopophis")
     counts(b)
@@ -204,11 +198,13 @@ def history_records(b: Bench) -> None:
     b.ask("cnc_stopophis")
     most = b.ask("cnc_rdophisno"), b.ask("cnc_rdalmhisno")
     for name, size, count in (("cnc_rdophistry", 8, most[0]), ("cnc_rdalmhistry", 48, most[1])):
-        for first, last in ((1, 1), (2, 3), (count, count), (count, count + 1), (count + 1, count + 1), (count - 1, count + 5),
-                            (0, 1), (0, 0), (3, 2), (1, 0), (1, count)):  # fmt: skip
+        for first, last in (
+            (1, 1), (2, 3), (count, count), (count, count + 1), (count + 1, count + 1), (count - 1, count + 5), (0, 1),
+            (0, 0), (3, 2), (1, 0), (1, count),
+        ):  # fmt: skip
             length = 6 + size * max(last - first + 1, 0)
             for more in (0, 1, -1, size, -size):
-                if 0 <= length + more:
+                if length + more >= 0:
                     records(b, name, first, last, length + more)
     b.ask("cnc_startophis")
     b.title("cleared alone, running and stopped; what is wrong clears nothing")

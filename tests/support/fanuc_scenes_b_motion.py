@@ -81,10 +81,24 @@ def signals_in_a_program(b: Bench) -> None:
     text = "N1 G1 X-30. Z18. F2400\nN2 G4 X0.2\nN3 G0 X10.\nN4 Y7.\nN5 M30"
     b.program(51, text, start=False)
     for number, values in (
-        (8, (1, 0)), (2, (0, 1)), (8, (1, 0)), (15, (1, 0)), (10, (0, 254, 255, 37, 100)), (13, (0, 128, 255)),
-        (4, (2, 1, 4, 0)), (12, (5, 0)), (9, (2, 1)), (8, (1, 0)), (7, (1, 0)), (14, (1, 9, 0)), (3, (1, 0)), (8, (1, 0)),
-        (1, (0, 1)), (8, (1, 0)), (15, (1,)),
-    ):  # fmt: skip
+        (8, (1, 0)),
+        (2, (0, 1)),
+        (8, (1, 0)),
+        (15, (1, 0)),
+        (10, (0, 254, 255, 37, 100)),
+        (13, (0, 128, 255)),
+        (4, (2, 1, 4, 0)),
+        (12, (5, 0)),
+        (9, (2, 1)),
+        (8, (1, 0)),
+        (7, (1, 0)),
+        (14, (1, 9, 0)),
+        (3, (1, 0)),
+        (8, (1, 0)),
+        (1, (0, 1)),
+        (8, (1, 0)),
+        (15, (1,)),
+    ):
         for value in values:
             signal(b, number, value, cycles=40)
     for _ in range(6):
@@ -95,10 +109,37 @@ def signals_in_a_program(b: Bench) -> None:
     b.title("jogging")
     signal(b, 9, 4)
     for number, value, axis in (
-        (14, 1, 1), (14, 9, 4), (7, 1, 0), (14, 1, 2), (7, 0, 0), (14, 9, 1), (4, 8, 0), (4, 0, 0), (14, 1, 4), (10, 20, 0),
-        (2, 0, 0), (2, 1, 0), (13, 9, 4), (14, 1, 0), (14, 0, 2), (9, 5, 0), (14, 9, 3), (14, 0, 0), (9, 3, 0), (14, 1, 3),
-        (14, 0, 0), (9, 4, 0), (14, 9, 0), (3, 1, 0), (3, 0, 0), (14, 9, 1), (1, 0, 0), (14, 1, 2), (1, 1, 0), (14, 1, 2),
-    ):  # fmt: skip
+        (14, 1, 1),
+        (14, 9, 4),
+        (7, 1, 0),
+        (14, 1, 2),
+        (7, 0, 0),
+        (14, 9, 1),
+        (4, 8, 0),
+        (4, 0, 0),
+        (14, 1, 4),
+        (10, 20, 0),
+        (2, 0, 0),
+        (2, 1, 0),
+        (13, 9, 4),
+        (14, 1, 0),
+        (14, 0, 2),
+        (9, 5, 0),
+        (14, 9, 3),
+        (14, 0, 0),
+        (9, 3, 0),
+        (14, 1, 3),
+        (14, 0, 0),
+        (9, 4, 0),
+        (14, 9, 0),
+        (3, 1, 0),
+        (3, 0, 0),
+        (14, 9, 1),
+        (1, 0, 0),
+        (14, 1, 2),
+        (1, 1, 0),
+        (14, 1, 2),
+    ):
         signal(b, number, value, axis, cycles=40)
     b.run(2000)
 
@@ -133,6 +174,14 @@ def direct_commands(b: Bench) -> None:
     command(b, "refpoint", 2, 0, 2)
     for name in ("dwell", "coordre"):
         command(b, name, 2, 0, 1, positions((2, 5)))
+    b.title("the examples of the manual")
+    ready(b, axes=6)
+    command(b, "abspoint", 1, 0, 2, 500, positions((1, 100000), (2, -100000)))
+    b.run(20000)
+    command(b, "incpoint", 1, 0, 2, 500, positions((1, 100000), (2, -100000)))
+    b.run(30000)
+    command(b, "refpoint", 1, 0, 1)
+    b.run(9000)
     b.title("one after the other, on each path")
     ready(b, axes=6)
     for path in range(1, 7):
@@ -219,9 +268,13 @@ def direct_at_work(b: Bench) -> None:
         b.run(cycles)
     b.title("the feed override, a hold, a servo that is off, a mode, a lock")
     for name, acts in (
-        ("override", ((10, 50), (10, 200), (10, 0), (10, 100))), ("hold", ((2, 0), (2, 1))), ("servo off", ((4, 1), (4, 0))),
-        ("modes", ((9, 4), (9, 0), (9, 1))), ("reset", ((3, 1), (3, 0))), ("emergency", ((1, 0), (1, 1))),
-    ):  # fmt: skip
+        ("override", ((10, 50), (10, 200), (10, 0), (10, 100))),
+        ("hold", ((2, 0), (2, 1))),
+        ("servo off", ((4, 1), (4, 0))),
+        ("modes", ((9, 4), (9, 0), (9, 1))),
+        ("reset", ((3, 1), (3, 0))),
+        ("emergency", ((1, 0), (1, 1))),
+    ):
         b.lines.append(f"- {name}")
         command(b, "incpoint", 1, 1, 1, 3000, positions((1, 4000)))
         command(b, "incpoint", 1, 1, 1, 3000, positions((1, -4000)))
@@ -299,9 +352,13 @@ def direct_at_work(b: Bench) -> None:
 def direct_units(b: Bench) -> None:
     """Units and signs of positions and feeds: increments, inches, rotary axes; what a Power Mate-D refuses."""
     for machine in (
-        {"increment": "IS-A"}, {"increment": "IS-B", "inch_output": True}, {"inch_input": True}, {"rotary": (2,)},
-        {"increment": "IS-A", "inch_output": True, "rotary": (3,)}, {"inch_input": True, "inch_output": True},
-    ):  # fmt: skip
+        {"increment": "IS-A"},
+        {"increment": "IS-B", "inch_output": True},
+        {"inch_input": True},
+        {"rotary": (2,)},
+        {"increment": "IS-A", "inch_output": True, "rotary": (3,)},
+        {"inch_input": True, "inch_output": True},
+    ):
         ready(b, axes=3, **machine)
         command(b, "incpoint", 1, 0, 3, 900, positions((1, 123), (2, -456), (3, 78)))
         b.run(12)

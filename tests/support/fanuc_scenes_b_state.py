@@ -1,4 +1,4 @@
-"""Scenes of what a control tells of itself: state, alarms, modal and diagnosis data, figures, servo values, messages."""
+"""Scenes of what a control tells of itself: state, alarms, modal and diagnosis data, figures, servos, messages."""
 
 from __future__ import annotations
 
@@ -150,6 +150,25 @@ def states(b: Bench) -> None:
     b.look()
 
 
+def alarm_info(b: Bench, kind: int, chosen: int, length: int) -> None:
+    """Read alarms, and write down axis, number and text of each as they lie in memory."""
+    found = b.library.cnc_rdalminfo(b.handle, kind, chosen, length)
+    code, made = found if isinstance(found, tuple) else (found, None)
+    shown = []
+    if made is not None and code == 0:
+        data, size = bytes(made.pack())[:length], (4, 38)[kind]
+        for at in range(0, length - 2, size):
+            axis, number = (int.from_bytes(data[at + k : at + k + 2], "little", signed=True) for k in (0, 2))
+            text = (
+                f" {int.from_bytes(data[at + 4 : at + 6], 'little')} {data[at + 6 : at + 38]!r}"
+                if kind
+                else ""
+            )
+            shown.append(f"{axis}:{number}{text}")
+        shown.append(data[-2:].hex())
+    b.lines.append(f"alarms {kind} {chosen} in {length} {fwlib.EW(code).name} {', '.join(shown)}".rstrip())
+
+
 def alarms(b: Bench) -> None:
     """Alarms at the ends of each group, of no axis, the first and the last; formats, selections, rooms."""
     b.title("each number alone")
@@ -157,7 +176,7 @@ def alarms(b: Bench) -> None:
         b.fresh(axes=3)
         b.act("raise_alarm", number, f"TEXT OF {number}", axis=None if number % 2 else 1 + number % 3)
         for kind, size in ((0, 4), (1, 38)):
-            b.ask("cnc_rdalminfo", kind, -1, size + 2)
+            alarm_info(b, kind, -1, size + 2)
         b.ask("cnc_clearophis", 0)
         b.act("reset")
         b.histories()
@@ -170,16 +189,16 @@ def alarms(b: Bench) -> None:
     for bit in range(16):
         for chosen in (1 << bit, 0xFFFF & ~(1 << bit)):
             for kind, size in ((0, 4), (1, 38)):
-                b.ask("cnc_rdalminfo", kind, short(chosen), size * (9 if chosen > 0x8000 else 2) + 2)
+                alarm_info(b, kind, short(chosen), size * (9 if chosen > 0x8000 else 2) + 2)
     for kind, size in ((0, 4), (1, 38)):
         for count in (1, 8, 9, 10, 20):
-            b.ask("cnc_rdalminfo", kind, -1, size * count + 2)
+            alarm_info(b, kind, -1, size * count + 2)
         for length in (0, -1, 2, size + 1, size + 3, size * 3, size * 2 + 2):
-            b.ask("cnc_rdalminfo", kind, 1, length)
+            alarm_info(b, kind, 1, length)
     for kind in (-1, 2, 0):
-        b.ask("cnc_rdalminfo", kind, 0, 6)
+        alarm_info(b, kind, 0, 6)
     for chosen in (0, 0x80, 0x200, 0x7800, short(0xFFFF & ~0x857F)):
-        b.ask("cnc_rdalminfo", 0, chosen, 6)
+        alarm_info(b, 0, chosen, 6)
     b.act("reset")
     b.act("power_cycle")
     b.histories()
@@ -242,8 +261,13 @@ G17 X[2*3] F600. M9
 #1=7.5
 G20 X.1 F10.
 G21 Y2. A-6. U8. V-9.125
+G66 P131 A2.
+X1.
+G67 Y0
 N99999 M5
-M30"""
+G91 M30
+B5 E3. Q-4. C7 W10. I-1.5 L9 D8 R-2. K.5 P77 O9
+G44 G95 G2 G19 G20 A-6. C7 U8. V9 W10 X-0 F12.345 M11 M12 M13 S2 T3 H4 J-.25"""
 
 
 def modal(b: Bench) -> None:
@@ -255,7 +279,7 @@ def modal(b: Bench) -> None:
     b.control.programs.register(131, "O0131\nN7 G91 X.25 F300\nM99\n")
     b.program(130, PROGRAM, start=False)
     b.control.control.set_switches(single_block=True)
-    for _ in range(26):
+    for _ in range(32):
         b.act("cycle_start")
         b.run(2)
         b.run(15000)
