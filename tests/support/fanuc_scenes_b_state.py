@@ -73,10 +73,12 @@ def states(b: Bench) -> None:
     b.fresh(script=waits)
     for mode in MODES:
         b.act("select_mode", mode)
-    for machine_state in ("idle", "reset signal", "emergency", "battery", "alarm"):
+    for machine_state in ("idle", "reset signal", "emergency", "emergency and reset", "battery", "alarm"):
         b.title(machine_state)
         signals = b.control.signals
-        if machine_state == "reset signal":
+        if machine_state.endswith("reset"):
+            b.control.emergency_stop()
+        if "reset" in machine_state:
             signals.give_bits(8, 0x80, 0x80)
         elif machine_state == "emergency":
             b.control.emergency_stop()
@@ -372,7 +374,7 @@ def diagnosis(b: Bench) -> None:
         (-1, 4),
     ):
         for axis in (0, 1, 4, 6, 7, -1, -2):
-            for length in (4, 6, 10, 28, 60, 200):
+            for length in (4, 5, 6, 23, 24, 45, 46, 200):
                 found = b.library.cnc_diagnosr(b.handle, first, axis, last, length)
                 if isinstance(found, tuple) and found[0] == 0:
                     b.lines.append(
