@@ -87,6 +87,16 @@ class Bench:
             f"* power on: {', '.join(f'{name}={plain(value)}' for name, value in machine.items())}"
         )
 
+    def again(self) -> None:
+        """Go on with another control that has the same memory, as after the end of a process, and look."""
+        now = self.control.clock.now
+        self.control = PowerMate(self.control.axes, memory=self.control.store)
+        self.control.clock.set_now(now)
+        self.library.attach(0, self.control)
+        _, self.handle = self.library.cnc_allclibhndl()
+        self.lines.append("* another process, the same memory")
+        self.look()
+
     # ------------------------------------------------------------------ what a scene does
 
     def title(self, text: str) -> None:

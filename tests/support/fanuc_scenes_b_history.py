@@ -89,6 +89,8 @@ def history_table(b: Bench) -> None:
     for name in ("reset", "power_cycle"):
         b.act(name)
         shown(b)
+    b.again()
+    shown(b)
 
 
 def history_signals(b: Bench) -> None:
@@ -99,7 +101,7 @@ def history_signals(b: Bench) -> None:
         low, high = ENDS[name]
         addresses = (44, low, 1000, high)
         watch(b, *((k, name, address, 0x7F) for k, address in enumerate(addresses, 1)))
-        for address in (*addresses, 45, 43, low - 1, 1001):
+        for address in (*addresses, 45, 43, low - 1, 1001, 1044, 0, high - 1000):
             for value in (0x41, 0xC1, 0x80, 0):
                 if letter == "X":
                     b.control.pmc.set_input(address, value)
@@ -234,6 +236,9 @@ def history_records(b: Bench) -> None:
     b.act("power_cycle")
     b.ask("cnc_rdalmhisno")
     b.ask("cnc_stopophis")
+    b.again()
+    b.ask("cnc_stopophis")
+    b.ask("cnc_rdophisno")
     b.ask("cnc_rdalmhisno")
     b.ask("cnc_rdalmhistry", 1, 2, 102)
     b.ask("cnc_rdalmhistry", 49, 50, 102)

@@ -60,6 +60,12 @@ def signals_of_operation(b: Bench) -> None:
             signal(b, 14, value, axis, cycles=8)
     for axis in (7, -1):
         signal(b, 14, 1, axis)
+    b.title("jogging on with each of six servos switched off and on again")
+    for bit in range(6):
+        signal(b, 14, 1, 0, cycles=20)
+        signal(b, 4, 1 << bit, cycles=200)
+        signal(b, 4, 0, cycles=60)
+        signal(b, 14, 0, 0, cycles=200)
     b.title("the number of an axis counts for 13 and 14 alone; longer elements of the value do not count")
     signal(b, 10, 44, 7)
     signal(b, 15, 1, -1)
@@ -283,6 +289,12 @@ def direct_at_work(b: Bench) -> None:
             signal(b, number, value, cycles=30)
         b.run(1000)
         b.do("cnc_setfin", fwlib.ODBFIN(cdata=[0xFF] * 8))
+    b.title("the buffer that becomes free takes the next command, though the other one is not empty")
+    for axis, value in ((1, 90), (2, 4000), (3, 70), (1, -50), (2, -4000)):
+        command(b, "incpoint", 3, axis % 2, 1, 6000, positions((axis, value)))
+        b.run(25)
+        command(b, "dwell", 3, 0, 1, positions((axis, 9)))
+    b.run(600)
     b.title(
         "held on the way: two axes, a reference return, a dwell, a coordinate; by the button; a reset while held"
     )
@@ -310,6 +322,7 @@ def direct_at_work(b: Bench) -> None:
     b.run(300)
     command(b, "abspoint", 1, 1, 1, 3000, positions((1, 0)))
     b.run(400)
+    b.do("cnc_setfin", fwlib.ODBFIN(cdata=[0xFF] * 8))
     b.title("an alarm, the emergency stop, a command while it is on, a limit of each axis in each direction")
     command(b, "incpoint", 1, 1, 1, 3000, positions((1, 4000)))
     b.run(30)
@@ -325,6 +338,7 @@ def direct_at_work(b: Bench) -> None:
     signal(b, 3, 1)
     command(b, "dwell", 2, 1, 1, positions((1, 5)))
     signal(b, 3, 0)
+    b.act("power_cycle")
     b.parameters(1320, 5000, 6000, 7000)
     b.parameters(1321, -5100, -6100, -7100)
     for axis, value in ((1, 9000), (2, -9000), (3, 9000), (1, -9000), (2, 9000), (3, -9000)):
@@ -332,6 +346,16 @@ def direct_at_work(b: Bench) -> None:
         b.run(400)
         b.act("reset")
         b.run(100)
+    for here, low, high, there in ((3000, 1000, 6000, 500), (-3000, -6000, -1000, -500)):
+        command(b, "abspoint", 1, 0, 1, 3000, positions((2, here)))
+        b.run(900)
+        b.parameters(1321, -5100, low, -7100)
+        b.parameters(1320, 5000, high, 7000)
+        command(b, "abspoint", 1, 1, 1, 3000, positions((2, there)))
+        b.run(400)
+        b.act("reset")
+        b.parameters(1321, -5100, -6100, -7100)
+        b.parameters(1320, 5000, 6000, 7000)
     b.title("a program has the axes")
     b.program(61, "N1 G1 X2. F1200\nN2 G4 X0.1\nN3 M30")
     command(b, "dwell", 6, 0, 1, positions((3, 4)))

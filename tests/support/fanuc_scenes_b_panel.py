@@ -44,6 +44,7 @@ def panel_values(b: Bench) -> None:
     b.do("cnc_wropnlsgnl", panel(USED, **first, **second))
     b.act("reset")
     b.act("power_cycle")
+    b.again()
     b.title("each bit read alone, and all but one")
     for bit in range(16):
         b.ask("cnc_rdopnlsgnl", short(1 << bit))
@@ -88,6 +89,7 @@ def panel_general(b: Bench) -> None:
     b.do("cnc_wropnlgsname", fwlib.IODBRDNA(type=0x81, sgnl1_name=b"COOLANT", sgnl8_name=b"CHIPS ON"))
     for name in ("reset", "power_cycle"):
         b.act(name)
+    b.again()
 
 
 def panel_at_work(b: Bench) -> None:
@@ -144,6 +146,9 @@ def panel_at_work(b: Bench) -> None:
     b.put("G", 100, 0)
     b.put("G", 102, 0)
     b.run(100)
+    for name in ("INC", "HND", "T-HND", "T-JOG"):
+        b.act("select_mode", name)
+        b.do("cnc_wropnlsgnl", panel(1, mode=3))
     for mode in (0, 2, 3, 4, 5):
         b.do("cnc_wropnlsgnl", panel(1, mode=1))
         b.act("cycle_start")
@@ -219,6 +224,7 @@ def pmc_areas(b: Bench) -> None:
     b.title("what outlasts a reset, and switching off")
     b.act("reset")
     b.act("power_cycle")
+    b.again()
     b.title("lengths, types, kinds, ranges that are none")
     for data_type, first, last, length in (
         (0, 5, 4, 8), (0, 5, 5, 8), (0, 5, 5, 10), (0, 5, 5, 9), (1, 5, 5, 9), (1, 5, 7, 11), (1, 5, 8, 12),

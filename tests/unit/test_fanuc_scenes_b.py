@@ -45,7 +45,7 @@ SHOWS = {
     ),
     "direct_at_work": (
         r"cnc_(refpoint|abspoint|incpoint|dwell|coordre|exebufstat|finstate|setfin)|ODBEXEC.*|ODBFIN.*|ODBPOS"
-        r"|ODBPOS\.[il]data|nmod.*|concept\.direct_command|cnc_opdi"
+        r"|ODBPOS\.[il]data|nmod.*|concept\.direct_command|cnc_opdi(\.(number\.|sig)([1-4]|10)\b.*)?"
     ),
     "direct_units": r"ODBPOS.*|cnc_(refpoint|abspoint|incpoint|coordre)|concept\.not_on_pmd|param\.(0000_2|100.*)",
     "configurations": r"cnc_sys(info|config)|ODBSYSC?(\..*)?|example\.cnc_sysinfo",
