@@ -66,6 +66,17 @@ def signals_of_operation(b: Bench) -> None:
         signal(b, 4, 1 << bit, cycles=200)
         signal(b, 4, 0, cycles=60)
         signal(b, 14, 0, 0, cycles=200)
+    b.title("a key that is pressed while the servo of its axis is off; keys in REF")
+    for bit in range(6):
+        signal(b, 4, 1 << bit, cycles=5)
+        signal(b, 14, 1, bit + 1, cycles=20)
+        signal(b, 4, 0, cycles=40)
+        signal(b, 14, 0, bit + 1, cycles=100)
+    signal(b, 9, 3)
+    for axis, value in ((1, 9), (6, 9), (2, 1), (3, 9), (0, 9)):
+        signal(b, 14, value, axis, cycles=30)
+        signal(b, 14, 0, axis, cycles=400)
+    signal(b, 9, 4)
     b.title("the number of an axis counts for 13 and 14 alone; longer elements of the value do not count")
     signal(b, 10, 44, 7)
     signal(b, 15, 1, -1)
@@ -180,6 +191,16 @@ def direct_commands(b: Bench) -> None:
     command(b, "refpoint", 2, 0, 2)
     for name in ("dwell", "coordre"):
         command(b, name, 2, 0, 1, positions((2, 5)))
+    b.title("axes that this machine does not have")
+    ready(b, axes=3)
+    for axis in (3, 4, 6):
+        command(b, "refpoint", 1, 0, axis)
+        command(b, "incpoint", 2, 0, 1, 600, positions((axis, 5)))
+        command(b, "abspoint", 3, 0, 1, 600, positions((axis, 5)))
+        command(b, "dwell", 4, 0, 1, positions((axis, 5)))
+        command(b, "coordre", 5, 0, 1, positions((axis, 5)))
+        command(b, "incpoint", 6, 0, axis, 600, positions(*((each, 1) for each in range(1, axis + 1))))
+        b.run(100)
     b.title("the examples of the manual")
     ready(b, axes=6)
     command(b, "abspoint", 1, 0, 2, 500, positions((1, 100000), (2, -100000)))
@@ -295,6 +316,16 @@ def direct_at_work(b: Bench) -> None:
         b.run(25)
         command(b, "dwell", 3, 0, 1, positions((axis, 9)))
     b.run(600)
+    b.title("commands that are given while a hold or a servo that is off is there already")
+    for number, on, off in ((2, 0, 1), (4, 2, 0)):
+        signal(b, number, on)
+        command(b, "incpoint", 1, 1, 1, 6000, positions((2, 60)))
+        command(b, "coordre", 2, 1, 1, positions((2, 33)))
+        command(b, "dwell", 3, 1, 1, positions((2, 7)))
+        command(b, "refpoint", 4, 1, 3)
+        b.run(40)
+        signal(b, number, off, cycles=40)
+        b.run(100)
     b.title(
         "held on the way: two axes, a reference return, a dwell, a coordinate; by the button; a reset while held"
     )

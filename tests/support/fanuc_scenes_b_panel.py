@@ -54,6 +54,10 @@ def panel_values(b: Bench) -> None:
     others = {name: most - (first | second)[name] for name, most in MEMBERS.values()}
     for k, bit in enumerate(MEMBERS):
         b.do("cnc_wropnlsgnl", panel(USED & ~(1 << bit), **(first | second if k % 2 else others)))
+    for values in (others, first | second):
+        b.do("cnc_wropnlsgnl", panel(USED, **values))
+        b.act("power_cycle")
+        b.again()
     b.title("one that is wrong among all: nothing is written")
     for name, most in MEMBERS.values():
         b.do("cnc_wropnlsgnl", panel(USED, **{**others, **first, **second, name: most + 1}))
@@ -146,9 +150,17 @@ def panel_at_work(b: Bench) -> None:
     b.put("G", 100, 0)
     b.put("G", 102, 0)
     b.run(100)
-    for name in ("INC", "HND", "T-HND", "T-JOG"):
+    for name, mode in (
+        ("INC", 3),
+        ("HND", 3),
+        ("T-HND", 3),
+        ("T-JOG", 4),
+        ("RMT", 1),
+        ("RMT", 0),
+        ("INC", 4),
+    ):
         b.act("select_mode", name)
-        b.do("cnc_wropnlsgnl", panel(1, mode=3))
+        b.do("cnc_wropnlsgnl", panel(1, mode=mode))
     for mode in (0, 2, 3, 4, 5):
         b.do("cnc_wropnlsgnl", panel(1, mode=1))
         b.act("cycle_start")

@@ -123,6 +123,16 @@ def states(b: Bench) -> None:
     b.act("reset")
     b.control.signals.state.battery_low = False
     b.look()
+    b.title("external reset beside an alarm that no reset takes away, beside a low battery")
+    b.control.signals.give_bits(8, 0x80, 0x80)
+    b.look()
+    b.control.signals.state.battery_low = True
+    b.act("raise_alarm", 101)
+    b.control.emergency_stop()
+    b.look()
+    b.control.emergency_stop(False)
+    b.act("power_cycle")
+    b.control.signals.state.battery_low = False
     b.title("editing")
     edit = b.control.control.edit("O0082", background=True)
     b.look()

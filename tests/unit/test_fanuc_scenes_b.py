@@ -68,12 +68,21 @@ SHOWS = {
 CONFORMANCE = load_conformance()
 STATED = [row.id for row in CONFORMANCE.rows("fanuc") if CONFORMANCE.state(row.id) is State.TESTED]
 # Alarms, states and addresses that no scene brings about.
+OF_ALL = r"ODBST(\.(aut|run|motion|emergency|alarm)(\.\d+)?)?"
+AT_WORK = (
+    "panel_at_work",
+    "signals_at_work",
+    "signals_in_a_program",
+    "direct_at_work",
+    "real_alarms",
+    "servo_values",
+)
 ELSEWHERE = re.compile(r"fanuc\.(modal\.G\.20\..*|.*EW_OK)")
 
 
 def shown(name: str) -> list[str]:
     """Return the rows that a scene shows."""
-    wanted = re.compile(rf"fanuc\.({SHOWS.get(name, '')})")
+    wanted = re.compile(rf"fanuc\.({SHOWS.get(name, '')}{'|' + OF_ALL if name in AT_WORK else ''})")
     return [row for row in STATED if wanted.fullmatch(row) and not ELSEWHERE.fullmatch(row)]
 
 

@@ -110,6 +110,8 @@ class Signals:
         state = self.state
         state.given = AT_POWER_ON.copy()
         state.feed, state.rapid, state.jog = 100, 0, 100.0
+        state.torque_mode = 0
+        self.set_torque_override(0, 255)
         self._applied = Overrides()
 
     def restored(self) -> None:
