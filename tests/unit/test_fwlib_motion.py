@@ -490,8 +490,10 @@ def test_start_hold_and_reset() -> None:
     give(library, handle, 3, 1)
     give(library, handle, 8, 1)
     give(library, handle, 8, 0)
-    assert state(control) is RunState.ACTIVE
-    give(library, handle, 3, 0)  # it resets when it comes, not when it goes
+    assert state(control) is RunState.RESET  # nothing starts while it is given
+    give(library, handle, 8, 1)
+    give(library, handle, 3, 0)
+    give(library, handle, 8, 0)
     assert state(control) is RunState.ACTIVE
 
 

@@ -1,7 +1,8 @@
 """Axes moved by direct commands of a program on a PC: two execution buffers and a completion flag per path.
 
-Every axis of a command goes to its own end at the commanded speed, and a block is over when all of them stand. The
-feed override holds, and so does a hold. An alarm, a reset or the emergency stop empties all buffers.
+Every axis of a command goes to its own end at the commanded speed, and a block is over when all of them are there. The
+feed override holds, and so does a hold: the rest of the way comes when it is taken back, or with the start button. An
+alarm, a reset or the emergency stop empties all buffers.
 """
 
 from __future__ import annotations
@@ -53,7 +54,8 @@ class AxisMotion:
                 for axis in path.blocks[0][1].axes:
                     self._power.control.manual.stop(self._axis_name(axis))
             path.blocks.clear()
-            path.begun = False
+            path.begun = path.held = False
+        self.state.held = False
 
     def advance(self, cycles: int, until: int | Callable[[], bool] | None) -> int:
         """Let time pass, in stretches that end where direct commands have to be looked at; return the cycles."""
@@ -93,6 +95,13 @@ class AxisMotion:
         used = {buffer for buffer, _ in self.state.paths[path - 1].blocks}
         return 0 in used, 1 in used
 
+    @property
+    def is_ready(self) -> bool:
+        """Whether no alarm, emergency stop or reset would drop a command at once."""
+        control = self._power.control
+        stopped = self._signals.reset_is_on or control.emergency is not Emergency.OFF
+        return not stopped and not shown(control.alarms.active)
+
     def has_room(self, path: int) -> bool:
         """Whether a path (from 1) takes a block now: a buffer is free, and no program has the axes."""
         programs = any(channel.active for channel in self._power.control.channels)
@@ -106,6 +115,14 @@ class AxisMotion:
         buffer = 1 - blocks[0][0] if blocks else 0
         blocks.append((buffer, block))
 
+    def hold(self) -> None:
+        """Let the axes of commands that move brake and wait for `go_on`."""
+        self.state.held = self.busy
+
+    def go_on(self) -> None:
+        """Let commands that are held go on."""
+        self.state.held = False
+
     # ------------------------------------------------------------------ time
 
     def horizon(self) -> int:
@@ -114,15 +131,14 @@ class AxisMotion:
             return _FOR_EVER
         now = self._power.control.clock.cycles
         dwells = [path.until - now for path in self.state.paths if path.begun and path.until > now]
-        waits = any(path.blocks and not path.begun for path in self.state.paths)
+        waits = any(path.blocks and (path.held or not path.begun) for path in self.state.paths)
         return 1 if waits else min(dwells, default=_FOR_EVER)
 
     EVENTS = ControlEvent.MANUAL | ControlEvent.ALARM | ControlEvent.RUN_STATE
 
     def look(self) -> None:
         """Begin blocks whose turn it is, and end those that are over."""
-        control = self._power.control
-        if self.busy and (control.emergency is not Emergency.OFF or shown(control.alarms.active)):
+        if self.busy and not self.is_ready:
             self.drop()
         for number, path in enumerate(self.state.paths):
             while path.blocks:
@@ -131,7 +147,7 @@ class AxisMotion:
                 if not self._is_over(path):
                     break
                 _, block = path.blocks.popleft()
-                path.begun, path.until = False, 0
+                path.begun, path.until, path.held = False, 0, False
                 if block.flag:
                     self.state.finished[number] = True
 
@@ -139,13 +155,33 @@ class AxisMotion:
         control, block = self._power.control, path.blocks[0][1]
         if block.order is Order.DWELL:
             return control.clock.cycles >= path.until
+        stopped = self._is_stopped(block)
+        path.held = path.held or (stopped and block.order is not Order.SET)
+        if path.held and not stopped:
+            path.held = not self._take_up(path, block)
         names = map(self._axis_name, block.axes)
-        return all(control.manual.motion(name).kind.value == "none" for name in names)
+        return not path.held and all(control.manual.motion(name).kind.value == "none" for name in names)
+
+    def _is_stopped(self, block: Block) -> bool:
+        """Whether a hold or a servo that is off keeps the axes of a block where they are."""
+        signals = self._signals
+        return self.state.held or signals.hold_is_on or any(map(signals.servo_is_off, block.axes))
+
+    def _take_up(self, path: PathBuffers, block: Block) -> bool:
+        """Let the axes that were stopped on their way go on, as soon as they stand; tell whether all do."""
+        manual = self._power.control.manual
+        motions = {axis: manual.motion(self._axis_name(axis)) for axis in block.axes}
+        if any(motion.stopping for motion in motions.values()):
+            return False
+        for axis, motion in motions.items():
+            if motion.kind.value == "none":
+                self._go(block, axis, path.ends.get(axis, 0.0))
+        return True
 
     def _begin(self, path: PathBuffers) -> bool:
         """Begin the first block; tell whether it could."""
-        control, signals, block = self._power.control, self._signals, path.blocks[0][1]
-        if signals.hold_is_on or any(signals.servo_is_off(axis) for axis in block.axes):
+        control, block = self._power.control, path.blocks[0][1]
+        if self._is_stopped(block):
             return False
         taken = {
             axis
@@ -160,13 +196,14 @@ class AxisMotion:
             path.until = control.clock.cycles + control.clock.cycles_for(longest_s)
         elif block.order is Order.SET:
             for axis, value in block.values:
-                self.state.shift[axis - 1] += value - self._positions.read()[axis - 1].absolute
+                self.state.shift[axis - 1] += value - self._positions.coordinate(axis)
         else:
             try:
                 for channel in control.channels:
                     channel.release()
+                path.ends = {axis: self._end(block, axis, value) for axis, value in block.values}
                 for axis, value in block.values:
-                    self._move(block, axis, value)
+                    self._go(block, axis, path.ends[axis])
             except ControlError as error:
                 for each in block.axes:
                     control.manual.stop(self._axis_name(each))
@@ -179,23 +216,26 @@ class AxisMotion:
 
     def _travel_alarm(self, block: Block, axis: int, value: int) -> None:
         """Raise the alarm of the limit that a command would go past."""
-        position = 0 if block.order is Order.INCREMENTAL else self._positions.read()[axis - 1].absolute
+        position = 0 if block.order is Order.INCREMENTAL else self._positions.coordinate(axis)
         number, sign = (500, "+") if value > position else (501, "-")
         self._power.raise_alarm(number, f"OVER TRAVEL : {sign}{self._axis_name(axis)}", axis=axis)
 
-    def _move(self, block: Block, axis: int, value: int) -> None:
-        control, name = self._power.control, self._axis_name(axis)
-        manual = control.manual
+    def _end(self, block: Block, axis: int, value: int) -> float:
+        """Return where an axis of a block goes, in machine coordinates; a reference return knows that itself."""
+        if block.order is Order.REFERENCE:
+            return 0.0
+        scale = self._scale(axis)
+        distance = value if block.order is Order.INCREMENTAL else value - self._positions.coordinate(axis)
+        target = float(self._power.control.machine.state.base[axis - 1])
+        return scale.value(scale.counts(target) + distance)
+
+    def _go(self, block: Block, axis: int, there: float) -> None:
+        manual, name = self._power.control.manual, self._axis_name(axis)
         if block.order is Order.REFERENCE:
             manual.reference(name)
             return
-        position = self._positions.read()[axis - 1]
-        scale = self._scale(axis)
-        distance = value if block.order is Order.INCREMENTAL else value - position.absolute
-        target = float(control.machine.state.base[axis - 1])
-        there = scale.value(scale.counts(target) + distance)
         speeds = manual.data.jog_speeds
-        speed = block.feed / _MM_PER_MIN * (0.254 if scale.inch else 1.0)
+        speed = block.feed / _MM_PER_MIN * (0.254 if self._scale(axis).inch else 1.0)
         manual.data = replace(manual.data, jog_speeds={**speeds, name: speed})
         try:
             manual.go_to(name, there)

@@ -76,15 +76,21 @@ class PathBuffers:
     blocks: deque[tuple[int, Block]]
     begun: bool = False
     until: int = 0  # the cycle at which a dwell ends
+    ends: dict[int, float] = field(default_factory=dict)  # where its axes go, in machine coordinates
+    held: bool = False  # a hold or a servo that is off has stopped it on its way
 
 
 @dataclass(slots=True)
 class AxisMotionState:
-    """Buffers, flags and coordinates."""
+    """Buffers, flags and coordinates; `shift` counts in increments of the machine, which no program changes.
+
+    `held`: a hold was given and has not been taken back.
+    """
 
     shift: list[int]
     paths: list[PathBuffers]
     finished: list[bool]
+    held: bool = False
 
     @classmethod
     def of(cls, axes: int) -> AxisMotionState:

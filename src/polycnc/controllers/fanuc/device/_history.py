@@ -17,6 +17,9 @@ from polycnc.machine import Store
 NAMES = " XGYF"
 """Letters of monitored signals by their number in the histories (Manual 000, cnc_rdhissgnl); 0 is none."""
 _ALARMS = "cnc.alarm_history"
+SHARED = frozenset({8, 10, 11, 12, 14, 43, 44, 46})
+"""Addresses of G that show switches of the control, whoever has turned them."""
+_SHOWN = "FG"
 Note: TypeAlias = Callable[[str, int, int, int], None]
 """Is told letter and address of a byte that has changed, and what it was and is."""
 _KEEP_OPERATIONS = 1000
@@ -43,9 +46,11 @@ class Monitored:
 
 
 class Histories:
-    """Sample and read both histories of a Power Mate; both are durable. `byte` returns the byte of an F address."""
+    """Sample and read both histories of a Power Mate; both are durable. `byte` returns the byte of an F or G address."""
 
-    def __init__(self, store: Store, power: Power, byte: Callable[[int], int], state: SamplingState) -> None:
+    def __init__(
+        self, store: Store, power: Power, byte: Callable[[str, int], int], state: SamplingState
+    ) -> None:
         self._store = store
         self._power = power
         self._byte = byte
@@ -64,15 +69,16 @@ class Histories:
     @property
     def is_awake(self) -> bool:
         """Whether the next cycle may bring something to note."""
-        return self._watches_f or self._power.control.alarms.active != self._active
+        return self._watches_changes or self._power.control.alarms.active != self._active
 
     def look(self) -> None:
         """Note what a cycle has brought, in that cycle."""
         self.sample(force=False)
 
     def switched_on(self) -> None:
-        """Note date and time at which the power came on; sampling goes on."""
+        """Note date and time at which the power came on; sampling goes on, from the signals that there are then."""
         self.state.stopped = False
+        self._shown.clear()
         now = self._power.control.clock.now
         self._note({"kind": Kind.DATE, "date": [now.year % 100, now.month, now.day], "power": 1})
         self._note({"kind": Kind.TIME, "time": [now.hour, now.minute, now.second], "power": 1})
@@ -94,18 +100,19 @@ class Histories:
 
     def note_signal(self, letter: str, address: int, old: int, new: int) -> None:
         """Note the change of a signal byte, if it is monitored and one of its masked bits has changed."""
+        self._shown[letter, address] = new
         for each in self._monitored.values():
             if (each.letter, each.address) == (letter, address) and (old ^ new) & each.mask:
                 self._note({"kind": Kind.SIGNAL, "letter": letter, "at": address, "old": old, "new": new})
                 return
 
     def sample(self, *, force: bool = True) -> None:
-        """Look at what has happened: alarms, and F signals, which change by themselves.
+        """Look at what has happened: alarms, and signals that nobody gives: those of F, and of G what has a switch.
 
         Not forced it looks at the alarms that are on, which is quick.
         """
         active = self._power.control.alarms.active
-        if not force and active == self._active and not self._watches_f:
+        if not force and active == self._active and not self._watches_changes:
             return
         self._active = active
         seen = self._state.get("seen", 0)
@@ -114,12 +121,12 @@ class Histories:
             if entry.content["number"] >= 0 and not self.state.stopped:
                 self._note_alarm(entry.content)
         for each in self._monitored.values():
-            if each.letter == "F":
-                new = self._byte(each.address)
-                old = self._shown.get(("F", each.address), new)
-                self._shown["F", each.address] = new
+            if each.letter in _SHOWN:
+                new = self._byte(each.letter, each.address)
+                old = self._shown.get((each.letter, each.address), new)
+                self._shown[each.letter, each.address] = new
                 if old != new:
-                    self.note_signal("F", each.address, old, new)
+                    self.note_signal(each.letter, each.address, old, new)
 
     def _note_alarm(self, content: dict[str, Any]) -> None:
         names = self._power.control.machine.config.axis_names
@@ -138,8 +145,11 @@ class Histories:
             self._operations.trim(_KEEP_OPERATIONS)
 
     @property
-    def _watches_f(self) -> bool:
-        return any(each.letter == "F" for each in self._monitored.values())
+    def _watches_changes(self) -> bool:
+        return any(
+            each.letter == "F" or (each.letter == "G" and each.address in SHARED)
+            for each in self._monitored.values()
+        )
 
     # ------------------------------------------------------------------ reading
 

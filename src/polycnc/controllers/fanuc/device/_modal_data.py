@@ -7,8 +7,9 @@ then its program from the head. The next blocks are the next ones of the text.
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
+from polycnc.controllers.fanuc.data._increment import scale
 from polycnc.controllers.fanuc.data._parameters import Parameters
 from polycnc.controllers.fanuc.device._device_state import MdiState
 from polycnc.controllers.fanuc.device._execution import Execution
@@ -53,10 +54,11 @@ _BLOCKS = 3
 
 @dataclass(frozen=True, slots=True)
 class Word:
-    """The last word of an address: the number as it is written, and whether this block holds it."""
+    """The last word of an address: the number as it is written, whether this block holds it, and in which unit."""
 
     text: str = ""
     here: bool = False
+    inch: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -136,24 +138,28 @@ class ModalData:
             "H": Word(str(modal.h)),
             "D": Word(str(modal.d or 0)),
         }
+        codes = [word for line in passed for word in _words(line)]
+        inch = next((units == "20" for units in map(_code, codes) if units in CODES[5]), modal.inch)
         for line in passed:
             words = _words(line)
+            inch = next((units == "20" for units in map(_code, reversed(words)) if units in CODES[5]), inch)
             auxiliary = [number for letter, number in words if letter == "M"]
             if auxiliary:
                 for k in range(_BLOCKS):
                     found[("M", "M2", "M3")[k]] = Word(auxiliary[k] if k < len(auxiliary) else "0")
-            found |= {letter: Word(number) for letter, number in words if letter not in "GM"}
+            found |= {letter: Word(number, inch=inch) for letter, number in words if letter not in "GM"}
         here = {letter for letter, _ in commanded}
         several = sum(letter == "M" for letter, _ in commanded)
         for name, word in found.items():
             on = several >= int(name[1:]) if len(name) > 1 else name in here
-            found[name] = Word(word.text, on)
+            found[name] = replace(word, here=on)
         return found
 
     # ------------------------------------------------------------------ values
 
-    def value(self, name: str, text: str) -> int:
-        """Return the number of a word as a program reads it: lengths and angles in increments."""
+    def value(self, name: str, word: Word) -> int:
+        """Return the number of a word as a program reads it: lengths and angles in increments of the unit it is in."""
+        text = word.text
         if not text:
             return 0
         digits = text.replace(".", "")
@@ -162,7 +168,8 @@ class ModalData:
         names = self._units.axis_names
         is_length = name in names or name in _LENGTHS
         axis = names.index(name) + 1 if name in names else 1
-        decimals = self._units.input_scale(axis).decimals
+        linear = not self._units.is_rotary(axis)
+        decimals = scale(self._units.increment, linear=linear, inch=word.inch).decimals
         if "." in text or (is_length and self._parameters.bit(3401, 0)):
             increments: float = float(text) * 10.0**decimals
             return round(increments)

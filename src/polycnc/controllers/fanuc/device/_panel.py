@@ -58,7 +58,6 @@ class Panel:
         self._select = select
         self._area = store.area("fanuc.panel", int)
         self._names = store.area("fanuc.panel_names", str)
-        self._used = bool(len(self._area))
 
     def value(self, name: str) -> int:
         """Return a signal by its name in `MEMBERS`."""

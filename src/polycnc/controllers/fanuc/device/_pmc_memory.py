@@ -111,11 +111,8 @@ class PmcMemory:
             self._note(letter, address, old, value)
 
     def _byte(self, letter: str, address: int) -> int:
-        signals = self._signals
-        if letter == "G":
-            return signals.g(address)
-        if letter == "F":
-            return signals.f(address)
+        if letter in "GF":
+            return self._signals.byte(letter, address)
         if letter in _DURABLE:
             return self._kept[letter].get(address, 0)
         return self._volatile.get((letter, address), 0)

@@ -43,7 +43,9 @@ class Positions:
         shift, scales, shifted = self._shift(), self._units.by_kind(), self._shifted.shift
         return tuple(
             AxisPositions(
-                absolute=scales[each.unit][0].counts(each.work + shift.get(each.name, 0.0)) + shifted[k],
+                absolute=scales[each.unit][0].counts(
+                    each.work + shift.get(each.name, 0.0) + scales[each.unit][1].value(shifted[k])
+                ),
                 machine=scales[each.unit][1].counts(each.machine),
                 relative=scales[each.unit][0].counts(each.relative),
                 distance=scales[each.unit][0].counts(each.to_go),
@@ -52,6 +54,12 @@ class Positions:
             )
             for k, each in enumerate(self._power.control.axes().values())
         )
+
+    def coordinate(self, axis: int) -> int:
+        """Return the absolute position of an axis (from 1) in increments of the machine."""
+        each = self._power.control.axes()[self._units.axis_name(axis)]
+        work = each.work + self._shift().get(each.name, 0.0)
+        return self._units.output_scale(axis).counts(work) + self._shifted.shift[axis - 1]
 
     def feed(self) -> int:
         """Return the actual feed: mm/min, with inch input 0.01 inch/min; of rotary axes alone deg/min."""

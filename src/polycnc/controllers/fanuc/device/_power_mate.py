@@ -99,13 +99,22 @@ class PowerMate:
         self.positions = Positions(power, units, state.axis_motion)
         self.skip = SkipSignal(power, self.positions, state, self.axes)
         self.tool_offsets = ToolOffsets(store, power, units, offsets)
-        self.history = Histories(store, power, lambda address: self.signals.f(address), state.sampling)
+        self.history = Histories(
+            store, power, lambda letter, at: self.signals.byte(letter, at), state.sampling
+        )
         note = self.history.note_signal
         ports = parameters, self.tool_offsets, state.signals, state.macros, note
         variables = partial(PowerMateVariables, power, *ports)
         self.custom_macros = Macros(self.macros, power, parameters, variables, state.macros)
-        pressed = self.cycle_start, self.feed_hold, self.reset, self.emergency_stop, self.select_mode
-        buttons = Buttons(*pressed, protect=state.turn_key)
+        buttons = Buttons(
+            start=self.cycle_start,
+            hold=self.feed_hold,
+            go_on=lambda: self.axis_motion.go_on(),
+            reset=self.reset,
+            emergency_stop=self.emergency_stop,
+            select_mode=self.select_mode,
+            protect=state.turn_key,
+        )
         read = power, parameters, units, self.positions, self.custom_macros, state
         self.signals = Signals(*read, buttons, lambda address: self.panel.image(address), note)
         self.panel = Panel(store, self.signals, state, self.select_mode)
@@ -173,13 +182,16 @@ class PowerMate:
         """Start the program of MEM, MDI or RMT (`remote`) at a line or the cursor, or go on with an interrupted one.
 
         Raises:
-            ControlError: As `cnc.Control.cycle_start`; feed hold is given; nothing sends a program in RMT.
+            ControlError: As `cnc.Control.cycle_start`; feed hold or reset is given; nothing sends a program in RMT.
         """
         self.power.take_over()
         if self.state.signals.hold_is_on:
             raise ControlError(
                 Refusal.HELD, "feed hold is given (*SP)", hint="Take feed hold away, at G8#5 or on the panel."
             )
+        if self.state.signals.reset_is_on:
+            raise ControlError(Refusal.HELD, "external reset is given (ERS)", hint="Take it away, at G8#7.")
+        self.axis_motion.go_on()
         channel = self.control.channels[0]
         self.remote.before_start(name_of(self.programs.selected) if self.programs.selected else None)
         if not channel.interrupted:
@@ -194,6 +206,7 @@ class PowerMate:
         """Press the stop button: what moves brakes and stands, an open download is stopped."""
         if self.transfer is not None:
             self.transfer.stop()
+        self.axis_motion.hold()
         try:
             self.control.feed_hold()
         except ControlError as error:
@@ -331,11 +344,11 @@ class PowerMate:
 
     def _begin_signals(self) -> None:
         """Let signals, panel and histories begin with the power."""
+        self.history.switched_on()
         self.axis_motion.clear()
         self.signals.clear()
         self.pmc.clear()
         self.panel.switched_on()
-        self.history.switched_on()
 
     def _switch_on(self, before: Machine | None) -> None:
         self.units.switched_on()

@@ -52,6 +52,7 @@ class Buttons(NamedTuple):
 
     start: Callable[[], None]
     hold: Callable[[], None]
+    go_on: Callable[[], None]
     reset: Callable[[], None]
     emergency_stop: Callable[[bool], None]
     select_mode: Callable[[PowerMateMode], None]
@@ -109,11 +110,17 @@ class Signals:
         state = self.state
         state.given = AT_POWER_ON.copy()
         state.feed, state.rapid, state.jog = 100, 0, 100.0
+        state.torque_mode = 0
+        self.set_torque_override(0, 255)
         self._applied = Overrides()
 
     def restored(self) -> None:
         """Take note that the state and the control behind it have gone back."""
         self._applied = self._power.control.overrides
+
+    def byte(self, letter: str, address: int) -> int:
+        """Return the byte of a G or F address."""
+        return self.g(address) if letter == "G" else self.f(address)
 
     # ------------------------------------------------------------------ G addresses
 
@@ -257,6 +264,8 @@ class Signals:
             self._buttons.emergency_stop(not new & ESP)
         if old & ~new & SP:
             self._buttons.hold()
+        if new & ~old & SP:
+            self._buttons.go_on()
         if new & ~old & ERS:
             self._buttons.reset()
 

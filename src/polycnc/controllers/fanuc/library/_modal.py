@@ -73,7 +73,7 @@ def _aux(device: PowerMate, data: ModalBlock, name: str) -> MODAL_AUX:
     flag = (_COMMANDED if word.here else 0) | (_POINT if point else 0)
     flag |= (_NEGATIVE if text.startswith("-") else 0) | digits & _DIGITS
     decimals = len(text.partition(".")[2]) if name == "F" else 0
-    return MODAL_AUX(aux_data=device.modal_data.value(name, text), flag1=flag, flag2=decimals & 7)
+    return MODAL_AUX(aux_data=device.modal_data.value(name, word), flag1=flag, flag2=decimals & 7)
 
 
 __all__ = ["cnc_modal"]

@@ -51,11 +51,13 @@ def _values(device: PowerMate, count: int, data: bytes) -> tuple[tuple[int, int]
 
 
 def _order(link: Link, path: int, block: Block) -> tuple[EW, ODBEXEC]:
-    """Put a command into a buffer, after all checks."""
+    """Put a command into a buffer, after all checks; EW_REJECT where an alarm or a stop would drop it."""
     device = link.device
     _check_enabled(device)
     if not all(device.parameters.value(8010, axis) for axis in block.axes):
         raise Refused(EW.EW_PARAM)
+    if not device.axis_motion.is_ready:
+        raise Refused(EW.EW_REJECT)
     if not device.axis_motion.has_room(path):
         raise Refused(EW.EW_BUSY)
     device = link.command()
