@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from dataclasses import replace
 from typing import Any, cast
 
 from polycnc.cnc import ProgramRun
 from polycnc.controllers.bosch._axes import SystemAxes
-from polycnc.controllers.bosch._channel_ports import ChannelPorts
+from polycnc.controllers.bosch._channel_ports import CUTTING, ChannelPorts, SpindleNow
 from polycnc.controllers.bosch.ncs import Mode
 from polycnc.controllers.bosch.system import SD_GROUPS, LastFunctions, Moment, ProgrammedShifts, SystemData
 from polycnc.nc import Group, ModalWords
@@ -61,9 +62,10 @@ class ChannelData:
         state = run.channel.state
         programmed, executed = self.programmed(), run.reading.modal
         once = programmed.placement.once
-        override, rpm = self._channels.spindle()
-        overrides = {_SPINDLE: override * 100.0}
+        now = self._channels.spindle()
+        overrides = {_SPINDLE: now.override * 100.0}
         turning = programmed if executed is None else executed
+        rpm = now.actual_rpm
         if rpm is None:
             rpm = turning.speed if turning.spindle_direction else 0.0
         probe = state.probe
@@ -71,7 +73,7 @@ class ChannelData:
         return SystemData(
             channel=self._number,
             programmed=_later(lambda: self._moment(programmed)),
-            active=_later(lambda: self._moment(turning)),
+            active=_later(lambda: self._active(turning, now)),
             block_function=0 if once in _GROUP_OF else once,
             feed_override=run.overrides.feed * 100.0,
             rapid=max((axis.vmax * 60.0 for axis in config.axes if axis.unit == "mm"), default=0.0)
@@ -88,6 +90,18 @@ class ChannelData:
                 enumerate(self._by_axis(run.selection.searched or (), state.modal.scale), 1)
             ),
             machining_axes=frozenset(range(1, len(axes.channels[self._number]) + 1)),
+        )
+
+    def _active(self, words: ModalWords, now: SpindleNow) -> Moment:
+        """Return what holds with the executed block; the spindle may turn since a program before."""
+        moment = self._moment(words)
+        if now.actual_rpm is None or not moment.senses:
+            return moment
+        cutting = words.g.get(Group.SPINDLE_MODE) in CUTTING
+        return replace(
+            moment,
+            speeds_rpm={_SPINDLE: words.speed if cutting else now.programmed_rpm},
+            senses={_SPINDLE: _ORIENTED if now.oriented else _SENSES[now.direction]},
         )
 
     def _machining_mode(self) -> int:

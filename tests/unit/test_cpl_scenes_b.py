@@ -1,0 +1,257 @@
+"""What the services of a living control tell in every state, written down in `tests/golden/cpl_b/NAME.txt`.
+
+The numbers themselves are asserted from the manual elsewhere; here nothing can change unseen, on any axis, in either
+channel, whoever asks. After a wanted change: `--update-goldens`, and read the difference.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+from polycnc.cnc import Mode as ControlMode
+from polycnc.controllers.bosch.ncs import DATA_SERVICES, Mode
+from support.cpl_scenes_b import EXTRA, Bench, Waiters, holders, sizes
+
+RECORDED = Path(__file__).parents[1] / "golden" / "cpl_b"
+SCENES: dict[str, Callable[[Bench], None]] = {}
+
+
+def scene(act: Callable[[Bench], None]) -> Callable[[Bench], None]:
+    """Make a function a scene of a control."""
+    SCENES[act.__name__] = act
+    return act
+
+
+PART = """1 FXC("X",54,1)=3 : FXC("Y",154,1)=-0.5 : FXC("B",254,1)=12 : FXC("U",160,0)=40.25 : FXC("Z",160,0)=-8
+N1 G54 (MSG,CLAMP THE PART)
+N1 G154
+N1 G254
+N2 G160
+N3 H3 S1500 M3 M8
+N4 G92 X-1.25
+N5 G1 X20 Y-12.5 Z7 B-30 U6 F6000
+N6 G4 F0.1
+N7 M0
+N8 M1 X22
+N9 H0 G53 M5 M9
+N9 G153
+N9 G253
+N10 G167
+N11 X0 Y0 Z0 B0 U0
+"""
+
+
+@scene
+def states(b: Bench) -> None:
+    """A program runs, is held, goes on, dwells, stops at M0 and M1, ends; then single blocks, MDI, jog, alarm."""
+    control = b.pnc.control
+    b.look("power on")
+    b.write("main1", PART)
+    b.pnc.select_program("main1")
+    b.look("selected", 1)
+    b.pnc.cycle_start()
+    b.look("started", 1)
+    b.look("in N3, the spindle speeds up", 160)
+    b.pnc.advance(2000, until=lambda: b.pnc.axes["X"].velocity > 5.0)
+    b.pnc.feed_hold(channel=1)
+    b.look("held: it runs down", 4)
+    b.look("held: stopped", 200)
+    b.pnc.cycle_start()
+    b.look("goes on", 50)
+    control.set_overrides(feed=0.3)
+    b.look("feed override 30 %", 100)
+    control.set_overrides(feed=0.0)
+    b.look("feed override 0 %", 100)
+    control.set_overrides(feed=1.5, spindle=1.2)
+    b.look("feed override 150 %, spindle override 120 %", 40)
+    b.pnc.advance(2000, until=lambda: b.data(39, 1) == "1")
+    b.look("in N6, the dwell")
+    b.look("in N7, M0", 200)
+    control.set_switches(optional_stop=True, block_delete=frozenset({1}), channel=0)
+    b.pnc.cycle_start()
+    b.look("in N8, M1", 200)
+    b.pnc.cycle_start()
+    b.look("in N11, back", 60)
+    b.pnc.reset(channel=1)
+    b.look("reset on the way", 1)
+    b.look("reset: stopped", 300)
+    control.set_overrides(feed=1.0, spindle=1.0)
+    control.set_switches(optional_stop=False, block_delete=frozenset(), channel=0)
+    b.look("overrides as before", 1)
+
+
+@scene
+def modes(b: Bench) -> None:
+    """Every mode, by hand, by blocks put in, one after the other, and after a search; then what goes wrong."""
+    control, pnc = b.pnc.control, b.pnc
+    b.look("power on")
+    control.set_overrides(feed=0.25, channel=1)
+    control.set_overrides(spindle=0.75)
+    control.set_switches(optional_stop=True, block_delete=frozenset({2}), machine_lock=True, channel=1)
+    b.look("overrides and switches of channel 2 before its first program", 1)
+    control.set_overrides(feed=1.0, spindle=1.0)
+    control.set_switches(optional_stop=False, block_delete=frozenset(), machine_lock=False)
+    for mode in (
+        Mode.PROGRAM_BLOCK,
+        Mode.SINGLE_STEP,
+        Mode.SINGLE_BLOCK,
+        Mode.DEBUG_BLOCK,
+        Mode.DEBUG_AUTOMATIC,
+    ):
+        pnc.select_mode(mode, channel=2)
+        b.look(f"mode {mode.name} of channel 2", 1)
+    pnc.select_mode(Mode.SINGLE_BLOCK, channel=2)
+    b.run("N1 G70 X2=0.5 C2=20 F100\nN2 X2=1 (MSG,SECOND)\nN3 X2=0", 3, channel=2)
+    b.look("channel 2, one block in inches", 100)
+    b.look("channel 2 stands after the block", 10_000)
+    pnc.cycle_start(channel=2)
+    b.look("channel 2, the next block", 300)
+    pnc.reset(channel=2)
+    b.look("channel 2, reset while it moves", 1)
+    b.look("channel 2 stands", 500)
+    pnc.select_mode(Mode.MDI, channel=1)
+    b.look("MDI", 1)
+    pnc.select_blocks("N1 G1 X7.5 B-10 F3000")
+    b.look("MDI, a block put in", 1)
+    pnc.cycle_start()
+    b.look("MDI, under way", 60)
+    b.look("MDI, over", 1500)
+    pnc.select_mode(Mode.JOG)
+    b.look("jog", 1)
+    control.jog("X", -1)
+    control.jog("W", 1, rapid=True)
+    control.jog("C2", 1)
+    b.look("jog of X, W and C2", 200)
+    control.jog("X", None)
+    control.jog("W", None)
+    control.jog("C2", None)
+    b.look("jog over", 500)
+    control.select_mode(ControlMode.INC)
+    control.increment("Z", 1, 0.1)
+    b.look("a step of Z", 15)
+    control.select_mode(ControlMode.HANDLE)
+    control.handwheel("U", -3, 0.01)
+    b.look("three pulses of U back", 15)
+    pnc.select_mode(Mode.REFERENCE)
+    b.look("reference", 1)
+    control.reference("Y")
+    b.look("Y searches its reference point", 10)
+    b.look("Y is there", 3000)
+    pnc.select_mode(Mode.AUTOMATIC)
+    b.write("main1", "N1 G1 X10 F6000\nN2 X20 (MSG,TWO)\nN3 M4 S900 X30\nN4 X40\nN5 X50")
+    pnc.select_program("main1")
+    pnc.search_block("N3", "N4")
+    b.look("a search for N3", 1)
+    pnc.cycle_start()
+    b.look("on the way to N3", 40)
+    b.look("over after N4", 20_000)
+    control.set_switches(machine_lock=True)
+    b.run("N1 G0 X5", 5)
+    b.look("test without motion", 30)
+    pnc.reset()
+    pnc.advance(500)
+    control.set_switches(machine_lock=False)
+    pnc.advance(500)
+    b.run("N1 G1 X50 F6000\n2 A=SD(999)", 900)
+    b.look("an error of the program")
+    pnc.reset()
+    pnc.advance(500)
+    b.run("N1 S500 M3\nN2 G1 X100 F6000", 500)
+    control.emergency_stop()
+    b.look("emergency stop on the way", 2)
+    b.look("emergency stop, it stands", 1000)
+    b.attempt("start", lambda: pnc.cycle_start())
+    control.emergency_stop(False)
+    b.look("emergency stop released", 10)
+    pnc.reset()
+    b.look("reset", 10)
+    b.run("N1 G1 X-60 F9000", 50)
+    control.put_alarm("following_error", axis="X")
+    b.look("alarm of X on the way", 2)
+    b.look("alarm, it stands", 1000)
+    pnc.reset()
+    b.look("reset", 10)
+
+
+@scene
+def new(b: Bench) -> None:
+    """How often what waits for new data is answered, while nothing happens and while blocks are executed."""
+    waiters = Waiters(b)
+    b.say("power on")
+    waiters.pass_cycles(1)
+    waiters.pass_cycles(6)
+    b.say("a program of three short blocks")
+    b.run("".join(f"N{k} G1 X{k / 2} F60000\n" for k in range(1, 4)), 0)
+    waiters.pass_cycles(60)
+    b.say("channel 2: a message, a dwell, M8, inches, H3")
+    b.run("N1 (MSG,A)\nN2 G4 F0.01\nN3 M8\nN4 G70\nN5 H3\nN6 X2=1 F100", 0, channel=2)
+    waiters.pass_cycles(25)
+    b.say("overrides, switches, modes")
+    b.pnc.reset()
+    b.pnc.advance(400)
+    waiters.pass_cycles(1)
+    b.pnc.control.set_overrides(feed=0.5, spindle=0.5)
+    waiters.pass_cycles(2)
+    b.pnc.control.set_switches(optional_stop=True, block_delete=frozenset({1}), machine_lock=True)
+    waiters.pass_cycles(2)
+    b.pnc.select_mode(Mode.JOG)
+    waiters.pass_cycles(2)
+    b.pnc.transfer_axis("W", 2)
+    waiters.pass_cycles(2)
+    b.pnc.control.jog("Y", 1)
+    waiters.pass_cycles(10)
+
+
+@scene
+def refusals(b: Bench) -> None:
+    """What services answer of channels, selections, types and sizes that are not theirs."""
+    b.run("1 A=1", 20)
+    for channel in (-3, -2, -1, 0, 1, 2, 3, 64):
+        b.say(f"channel {channel}")
+        found: dict[str, list[str]] = {}
+        for service in range(-1, 103):
+            answer = b.data(service, channel, *EXTRA.get(service, ()))
+            found.setdefault(answer if answer.startswith("code") else "data", []).append(str(service))
+        for answer, services in found.items():
+            b.note(answer, " ".join(services))
+    b.say("selections")
+    for service, selections in {
+        42: [(), (-1,), (0,), (65535,), (65536,)],
+        **{k: [(), (-1,), (0,), (1,), (2,), (3,), (4,), (5,), (12,), (13,), (64,)] for k in (55, 56, 57)},
+        62: [(), (1,), (1, 39), (1, 40), (1, 41), (1, 47), (1, 51), (2, 51), (1, 53), (1, -1)],
+    }.items():
+        for selection in selections:
+            b.note(f"{service} {selection}", b.data(service, -1, *selection))
+    b.say("variables that are filled")
+    kinds: dict[str, list[str]] = {}
+    for service in DATA_SERVICES:
+        kinds.setdefault(holders(b, service), []).append(str(service))
+    for kind, services in kinds.items():
+        b.note(kind, " ".join(services))
+    b.say("sizes from 0, of a field of 3 or a text of 9")
+    kinds = {}
+    for service in DATA_SERVICES:
+        kinds.setdefault(sizes(b, service), []).append(str(service))
+    for kind, services in kinds.items():
+        b.note(" ".join(services), kind)
+
+
+@pytest.mark.parametrize("name", SCENES)
+def test_a_control_tells_what_is_written_down(
+    name: str, tmp_path: Path, request: pytest.FixtureRequest
+) -> None:
+    bench = Bench(tmp_path)
+    try:
+        SCENES[name](bench)
+    except Exception:
+        print("\n".join(bench.lines))
+        raise
+    finally:
+        bench.pnc.close()
+    file, found = RECORDED / f"{name}.txt", "\n".join([f"# {SCENES[name].__doc__}", *bench.lines, ""])
+    if request.config.getoption("update_goldens"):
+        file.write_text(found, encoding="utf-8")
+    assert found.splitlines() == file.read_text(encoding="utf-8").splitlines()
