@@ -234,7 +234,7 @@ class Bench(Living):
             yield f"SD(1,g,1) active G functions [{channel}]", partial(self.groups, channel, 1)
             yield f"SD(1,g,2) last G functions [{channel}]", partial(self.groups, channel, 2)
             for name, places in PLACES:
-                function = name.partition("(")[0]
+                function = name.partition("(")[0].split()[0]
                 yield f"{name} [{channel}]", partial(self.each, channel, function, places)
 
 
@@ -310,3 +310,111 @@ def sizes(bench: Bench, service: int) -> str:
         )
         found.append(left if answer == 0 else f"code {answer}")
     return " ".join(found)
+
+
+SELECT, BLOCK, BUFFERED = 4, 32, 32 + 4096
+ORDERS: list[tuple[object, ...]] = [
+    (1,),
+    *((2, kind) for kind in (0, 1, 2, 3)),
+    (2,),
+    *(
+        (3, *ends)
+        for ends in ((), ("N2",), ("", "N2"), ("N2", "N3"), ("2",), ("N9",), ("N2", "N9"), ("N2", "N3", "N4"))
+    ),
+    *((SELECT, "PART", "", "", kind) for kind in (0, 1, 2, 3, 4, 64, 128, 192, 256, 512, 1024, 2048, 8192)),
+    (SELECT, "PART", "N2", "N3", 128),
+    (SELECT, "PART", "N9", "", 0),
+    (SELECT, "NONE", "", "", 0),
+    (SELECT, "NONE", "", "", 2),
+    (SELECT, "WRONG", "", "", 1),
+    (SELECT, "WRONG", "", "", 3),
+    (SELECT, "", "", "", 0),
+    (SELECT, "P" * 100, "", "", 2),
+    (SELECT, "P" * 101, "", "", 2),
+    (SELECT, "PART"),
+    (SELECT,),
+    *((SELECT, "G1 X2=3 F600", "", "", BLOCK + more) for more in (0, 64, 128, 192, 2048)),
+    (SELECT, "G1 X2=" + "0" * 504 + "3", "", "", BLOCK),
+    (SELECT, "G1 X2=" + "0" * 505 + "3", "", "", BLOCK),
+    (SELECT, "G1 Q", "", "", BLOCK + 128),
+    (SELECT, "G1 X2=3 F600\nX2=4", "", "", BUFFERED),
+    (SELECT, "G1 X2=3 F600\nX2=4", "", "", BUFFERED + 128),
+    (SELECT, "G1 X2=3" + " " * 4089, "", "", BUFFERED),
+    *((5, kind) for kind in (0, 1, 2)),
+    (6,),
+    *((7, mode) for mode in (0, 1, 2, 3, 4, 5, 6, 7, 8, 10, 11, 12, 13, 14)),
+    (7,),
+    *((8, how, where) for how, where in ((1, 1), (3, 2), (2, 3), (0, 1), (4, 1), (1, 0), (1, 4))),
+    (9,),
+    (0,),
+    (10,),
+]
+"""What MCOPS is asked for: the number of the function and its parameters."""
+
+
+SETTINGS = (7, 8, 9)
+
+
+def shown_order(order: Sequence[object]) -> str:
+    """Return an order as text; a long one is told by its length."""
+    parts = [
+        each if not isinstance(each, str) else f'"{each}"' if len(each) < 25 else f"text of {len(each)}"
+        for each in order
+    ]
+    return ",".join(str(each) for each in parts).replace("\n", "|")
+
+
+class Orders:
+    """Give one order after the other to a channel in the same state; write down the answers and what became of it."""
+
+    def __init__(self, bench: Bench, channel: int = 2) -> None:
+        self.bench, self.channel = bench, channel
+        self.asked = 0
+
+    def give_all(self, what: str) -> None:
+        """Give every order in the present state, and go back to it after each that was carried out."""
+        bench = self.bench
+        bench.say(f"{what}: {self.state()}")
+        begin = bench.pnc.snapshot()
+        before, refused = self.state(), dict[str, list[str]]()
+        for order in ORDERS:
+            answer = self.give(order)
+            if answer not in ("code 0", "waits") and self.state() == before:
+                refused.setdefault(answer, []).append(shown_order(order))
+                continue
+            at_once = self.state()
+            if order[0] in SETTINGS:  # of which the next one is asked in the state that this one leaves
+                bench.note(f"({shown_order(order)}) {answer}", at_once)
+                before = at_once
+                continue
+            bench.pnc.advance(30)
+            later = self.state()
+            bench.note(
+                f"({shown_order(order)}) {answer}", at_once if later == at_once else f"{at_once} / {later}"
+            )
+            bench.pnc.restore(begin)
+        bench.pnc.restore(begin)
+        for answer, orders in refused.items():
+            bench.note(f"{answer}: ({') ('.join(orders)})")
+
+    def give(self, order: Sequence[object]) -> str:
+        """Return what an order is answered within four cycles."""
+        client = Coupling(self.bench.pnc.ncs, None, 1)
+        for cycles in range(4):
+            try:
+                answer = client.mcops(order[0], self.channel, *order[1:])
+            except Fault as fault:
+                return refusal(fault)
+            if answer is not BLOCKED:
+                return f"code {answer}" + (f" after {cycles}" if cycles else "")
+            self.bench.pnc.advance(1)
+        return "waits"
+
+    def state(self) -> str:
+        """Return the mode, the states, how to return and the program of the channel."""
+        bench = self.bench
+        services = (31, 32, 46, 30, 87)
+        found = [bench.data(service, self.channel).replace("P" * 90, "...") for service in services]
+        bench.pnc.ncs.ledger.unchanged.clear()
+        x2 = number(round(bench.pnc.axes["X2"].setpoint, 4))
+        return f"mode {found[0]}, {found[1]}, way {found[2]}, {found[3]}, waits {found[4]}, X2 {x2}"

@@ -12,8 +12,9 @@ from pathlib import Path
 import pytest
 
 from polycnc.cnc import Mode as ControlMode
+from polycnc.cnc import RunState
 from polycnc.controllers.bosch.ncs import DATA_SERVICES, Mode
-from support.cpl_scenes_b import EXTRA, Bench, Waiters, holders, sizes
+from support.cpl_scenes_b import EXTRA, Bench, Orders, Waiters, holders, sizes
 
 RECORDED = Path(__file__).parents[1] / "golden" / "cpl_b"
 SCENES: dict[str, Callable[[Bench], None]] = {}
@@ -237,6 +238,103 @@ def refusals(b: Bench) -> None:
         kinds.setdefault(sizes(b, service), []).append(str(service))
     for kind, services in kinds.items():
         b.note(" ".join(services), kind)
+
+
+PARTS = {
+    "PART": "N1 G1 X2=1 F6000\nN2 X2=2\nN3 X2=3\nN4 X2=4\nM30\n",
+    "WRONG": "N1 G1 X2=1 F600\n20 IF A\n",
+    "main2": "N1 G1 X2=20 F600\nN2 X2=30\nN3 M0\nN4 X2=0\n",
+    "stop": "N1 M0\nN2 G1 X2=30 F600\nN3 X2=40\n",
+}
+
+
+@scene
+def orders(b: Bench) -> None:
+    """What a channel does when another control asks for process services, in every state of its own."""
+    pnc = b.pnc
+    for name, program in PARTS.items():
+        b.write(name, program)
+    given = Orders(b)
+    given.give_all("nothing selected")
+    for channel in (-3, -2, -1, 0, 1, 3):
+        given.channel = channel
+        b.note(
+            f"channel {channel}",
+            " ".join(given.give(order) for order in ((6,), (5,), (7, 5), (8, 1, 1), (9,), (1,))),
+        )
+    given.channel = 2
+    pnc.select_program("main2", channel=2)
+    given.give_all("selected")
+    pnc.cycle_start(channel=2)
+    pnc.advance(300)
+    given.give_all("under way")
+    pnc.feed_hold(channel=2)
+    pnc.advance(100)
+    pnc.reset(channel=2)
+    pnc.advance(100)
+    pnc.select_program("stop", channel=2)
+    pnc.cycle_start(channel=2)
+    pnc.advance(20)
+    given.give_all("at M0")
+    pnc.reset(channel=2)
+    pnc.advance(20)
+    pnc.select_mode(Mode.MDI, channel=2)
+    given.give_all("MDI")
+    pnc.select_blocks("G1 X2=30 F600", channel=2)
+    pnc.cycle_start(channel=2)
+    pnc.advance(100)
+    given.give_all("MDI, under way")
+    pnc.reset(channel=2)
+    pnc.advance(200)
+    pnc.select_mode(Mode.JOG, channel=2)
+    given.give_all("jog")
+    pnc.select_mode(Mode.REFERENCE, channel=2)
+    pnc.select_mode(Mode.AUTOMATIC, channel=2)
+    pnc.control.emergency_stop()
+    given.give_all("emergency stop")
+
+
+PROGRAMMED = """10 FXC("X",54,1)=3 : FXC("Y",154,1)=-0.5 : FXC("B",255,1)=12 : FXC("U",260,0)=40.25 : TC(1,345,0)=2.5
+11 TC(3,247,0)=1.5 : TC(1,247,0)=-7 : TC(2,247,0)=0.25
+N1 G54
+N2 G154
+N3 G255
+N4 G260
+N5 G1 X4 Y-2 Z1.5 B7 U0.5 F6000 S900 M4
+6 WAIT
+N7 M0
+N8 G70 H3 M3 S1234
+N9 G18 X0.5 B-7.5 F100
+10 WAIT
+N11 M0
+N12 G71 G17 G168 X1.5 Z-2 U0.25
+N13 G268 X0.125 B3
+N14 G92 Y7
+N15 G345
+N16 G247
+N17 X1 Y8 Z-3
+18 WAIT
+N19 M0
+N20 G91 X-1 G94 F1500 M19
+N21 G54 G90 G360
+N22 X0 Z0
+23 WAIT
+N24 M0
+"""
+
+
+@scene
+def programmed(b: Bench) -> None:
+    """System data, positions and last functions of both channels, with what is in force of a program."""
+    b.run("N1 G70 G168 X2=1\nN2 G1 X2=0.5 C2=10 F50\nN3 M0\n", 900, channel=2)
+    b.write("main1", PROGRAMMED)
+    b.pnc.select_program("main1")
+    for what in ("shifts of the tables and from outside", "inches, another plane, H", "program shifts, tools", "increments"):
+        b.pnc.cycle_start()
+        b.pnc.advance(20_000, until=lambda: b.pnc.run_state(1) is not RunState.ACTIVE)
+        b.pnc.control.set_overrides(feed=0.7, spindle=1.2)
+        b.look(what, 600, b.system_data)
+        b.look(what, 0)
 
 
 @pytest.mark.parametrize("name", SCENES)

@@ -20,7 +20,8 @@ _SEARCH = 10
 _SENSES = {1: 3, -1: 4, 0: 0}
 _ORIENTED = 19
 _OFF = (53, 153, 253, 67, 39, 146, 167)
-"""What is in force of groups of which nothing was programmed."""
+"""What is in force of groups of which nothing was programmed; the last switches external zero shifts off."""
+_EXTERNAL = frozenset(("G160", "G260", "G360", "G167"))
 _STATED = (
     Group.MOTION, Group.DISTANCE, Group.UNITS, Group.PLANE, Group.FEED_MODE, Group.RADIUS_COMPENSATION,
 )  # fmt: skip
@@ -70,13 +71,14 @@ class ChannelData:
             rpm = turning.speed if turning.spindle_direction else 0.0
         probe = state.probe
         config = run.machine.config
+        own = [config.axes[axes.index(number)] for number in axes.channels[self._number]]
         return SystemData(
             channel=self._number,
             programmed=_later(lambda: self._moment(programmed)),
             active=_later(lambda: self._active(turning, now)),
             block_function=0 if once in _GROUP_OF else once,
             feed_override=run.overrides.feed * 100.0,
-            rapid=max((axis.vmax * 60.0 for axis in config.axes if axis.unit == "mm"), default=0.0)
+            rapid=max((axis.vmax * 60.0 for axis in own if axis.unit == "mm"), default=0.0)
             / (25.4 if programmed.inch else 1.0),
             spindle_overrides=overrides,
             actual_rpm={_SPINDLE: rpm},
@@ -152,7 +154,7 @@ class ChannelData:
         if words.placement.plane is not None:
             said.append(20)
         found = {_GROUP_OF[code]: code for code in said if code in _GROUP_OF}
-        for off in _OFF:
+        for off in _OFF[: -1 if words.placement.offsets else None]:  # G260 and G360 are in no group of SD(1)
             found.setdefault(_GROUP_OF[off], off)
         return set(found.values())
 
@@ -205,12 +207,14 @@ class ChannelData:
     def _last(self) -> LastFunctions:
         words = self.programmed()
         numbered = (*SD_GROUPS.values(), *_OTHER_GROUPS)
-        groups = [frozenset(f"G{code}" for code in group) for group in numbered]
+        groups = [_EXTERNAL, *(frozenset(f"G{code}" for code in group) for group in numbered)]
         groups += [frozenset(group) for group in _M_GROUPS]
         last = LastFunctions(groups)
         for code in (*words.placement.codes, *sorted(self.codes(words))):
             if any(code in group for group in numbered):
                 last.program(f"G{code}")
+        for name in words.placement.offsets[-1:]:
+            last.program(name)
         for name in (
             "M19" if words.spindle_oriented else {1: "M3", -1: "M4", 0: "M5"}[words.spindle_direction],
             *(f"M{code}" for code in (*words.coolant, *words.m)),

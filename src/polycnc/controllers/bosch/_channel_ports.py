@@ -198,6 +198,17 @@ class DeviceChannels:
     def attach(self, number: int, run: ProgramRun) -> None:
         """Do nothing: the control has its runs."""
 
+    def save(self) -> tuple[dict[str, int], dict[str, str]]:
+        """Return modes and missing programs as plain data."""
+        modes = {str(number): int(mode) for number, mode in self._modes.items()}
+        return modes, {str(number): name for number, name in self._missing.items()}
+
+    def restore(self, saved: tuple[dict[str, int], dict[str, str]]) -> None:
+        """Go back to modes and missing programs."""
+        modes, missing = saved
+        self._modes = {int(number): BoschMode(mode) for number, mode in modes.items()}
+        self._missing = {int(number): name for number, name in missing.items()}
+
     def select_mode(self, numbers: Sequence[int], mode: BoschMode) -> None:
         """Note the mode that was selected: several are one for the control within."""
         self._modes.update(dict.fromkeys(numbers, mode))

@@ -139,6 +139,11 @@ class Shown:
         self._read = _Axes(axes.numbers, self._axis_now)
         self.image = Image(axes=self._read, channels={number: Channel(number) for number in axes.channels})
 
+    def forget(self) -> None:
+        """Forget which blocks were seen: the control has gone back to a snapshot."""
+        self._tags.clear()
+        self._openings.clear()
+
     def renew(self) -> Image:
         """Read everything at the present cycle."""
         image, machine = self.image, self._channels.machine
