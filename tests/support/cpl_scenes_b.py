@@ -174,6 +174,23 @@ class Bench(Living):
             return refusal(fault)
         return "set"
 
+    def ask_all(self, name: str, places: Iterable[Place], channel: int = 1) -> None:
+        """Write down what a function returns for each of some arguments, in the order of the answers."""
+        found: dict[str, list[str]] = {}
+        for place in places:
+            found.setdefault(self.call(name, *place, channel=channel), []).append(shown_order(place))
+        for answer, asked in found.items():
+            self.note(f"{name} {answer}", " ".join(f"({each})" for each in asked))
+
+    def set_all(self, name: str, places: Iterable[tuple[object, Place]], channel: int = 1) -> None:
+        """Write down which values are set and which refused."""
+        found: dict[str, list[str]] = {}
+        for value, place in places:
+            asked = f"({shown_order(place)})={shown_order([value])}"
+            found.setdefault(self.set(name, value, *place, channel=channel), []).append(asked)
+        for answer, done in found.items():
+            self.note(f"{name} {answer}", " ".join(done))
+
     def run(self, program: str, cycles: int, channel: int = 1) -> None:
         """Select and start a program; it may go wrong."""
         self.write(f"main{channel}", program)
