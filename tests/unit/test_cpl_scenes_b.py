@@ -14,7 +14,7 @@ import pytest
 from polycnc.cnc import Mode as ControlMode
 from polycnc.cnc import RunState
 from polycnc.controllers.bosch.ncs import DATA_SERVICES, Mode
-from polycnc.controllers.bosch.system import Signals
+from polycnc.controllers.bosch.system import Signals, Tab
 from polycnc.nc.cpl import OMITTED, Field
 from support.cpl_scenes_b import EXTRA, Bench, Orders, Waiters, holders, sizes
 
@@ -460,12 +460,18 @@ def signals(b: Bench) -> None:
     b.run("1 A=SD(999)", 20)
     b.run("N1 G1 Q5", 20, channel=2)
     b.pnc.control.put_alarm("following_error", axis="X2")
+    b.pnc.control.put_alarm("function_failed", detail="M8")
+    b.pnc.control.emergency_stop()
     b.pnc.advance(5)
-    for channel, kind, count in [(c, k, 9) for c in (-2, -1, 0, 1, 2, 3) for k in (0, 6, 8, -1, 11)] + [(-1, 0, n) for n in (0, 1, 2)]:
+    cases = [(channel, kind, 9) for channel in (-2, -1, 0, 1, 2, 3) for kind in (0, 2, 5, 6, 8)]
+    for channel, kind, count in [*cases, *((-1, kind, 9) for kind in (-1, 10, 11)), *((-1, 0, n) for n in (0, 1, 2, 1.5))]:
         errors = Field("I", (4, 3))
         found = b.call("GETERR", channel, kind, errors, count)
         rows = " ".join("/".join(str(errors[row, column]) for column in (1, 2, 3)) for row in range(1, 5))
         b.note(f"GETERR({channel},{kind},E%,{count}) {found}", rows)
+    for tab in Tab:
+        b.note(f"window of {tab.name}", " / ".join(" ".join(each) for each in b.pnc.information(tab)))
+    b.pnc.control.emergency_stop(False)
     b.pnc.reset(channel=1)
     errors = Field("I", (1, 3))
     b.note("after a reset of channel 1", b.call("GETERR", -1, 0, errors, 1))

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import NamedTuple, Protocol
 
-from polycnc.cnc import AxisStatus, Control, Emergency, Mode, Overrides, ProgramRun, RunState, Switches
+from polycnc.cnc import Alarm, AxisStatus, Control, Emergency, Mode, Overrides, ProgramRun, RunState, Switches
 from polycnc.controllers.bosch.ncs import Mode as BoschMode
 from polycnc.kernel import PIDF
 from polycnc.machine import Machine
@@ -93,6 +93,9 @@ class ChannelPorts(Protocol):
     def needs_reset(self, number: int) -> bool:
         """Tell whether an alarm or the emergency stop lets a channel do nothing until it is reset."""
 
+    def alarms(self) -> tuple[Alarm, ...]:
+        """Return the alarms that are on beside the errors of runs."""
+
     def spindle(self) -> SpindleNow:
         """Return the spindle in the present cycle."""
 
@@ -164,6 +167,10 @@ class AttachedRuns:
     def needs_reset(self, number: int) -> bool:
         """Return False: the run itself is in alarm then."""
         return False
+
+    def alarms(self) -> tuple[Alarm, ...]:
+        """Return none: runs have their own."""
+        return ()
 
     def spindle(self) -> SpindleNow:
         """Return 100 %, and no speed of its own."""
@@ -280,6 +287,10 @@ class DeviceChannels:
     def needs_reset(self, number: int) -> bool:
         """Tell whether an alarm or the emergency stop lets a channel do nothing until it is reset."""
         return self._control.channels[number - 1].broken or self._control.emergency is not Emergency.OFF
+
+    def alarms(self) -> tuple[Alarm, ...]:
+        """Return the alarms that are on."""
+        return self._control.alarms.active
 
     def spindle(self) -> SpindleNow:
         """Return the spindle in the present cycle."""
