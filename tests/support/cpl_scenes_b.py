@@ -9,8 +9,11 @@ from itertools import groupby
 from pathlib import Path
 from typing import TypeAlias
 
+import numpy as np
+
 from polycnc.cnc import ControlError, Script
 from polycnc.controllers.bosch.ncs import DATA_SERVICES, Coupling
+from polycnc.controllers.bosch.screen import Surface
 from polycnc.nc.cpl import BLOCKED, Box, CharacterField, Fault, Field
 from support.living_pnc import AXIS, SERVO, Living
 
@@ -132,6 +135,8 @@ class Bench(Living):
         self.pnc.transfer_axis("W", None)
         self.lines: list[str] = []
         self._known: dict[str, str] = {}
+        self.seen: set[str] = set()
+        """What was on the screen when it was written down last."""
         self.services = [*self._services()]
         self.system_data = [*self._system_data()]
 
@@ -435,3 +440,36 @@ class Orders:
         bench.pnc.ncs.ledger.unchanged.clear()
         x2 = number(round(bench.pnc.axes["X2"].setpoint, 4))
         return f"mode {found[0]}, {found[1]}, way {found[2]}, {found[3]}, waits {found[4]}, X2 {x2}"
+
+
+def picture(surface: Surface) -> list[str]:
+    """Return what stands on a screen: pixels of each colour with their edges and a sum, texts, softkeys, colours."""
+    found = []
+    for colour in range(8):
+        y, x = np.nonzero(surface.pixels == colour)
+        if len(x):
+            edges = f"{x.min()}-{x.max()} x {y.min()}-{y.max()}"
+            found.append(f"colour {colour}: {len(x)} pixels, {edges}, sum {int((x * 7 + y * 13).sum())}")
+    for row, cells in enumerate(surface.lines(), 1):
+        if shown := cells.rstrip():
+            found.append(f"line {row}: {shown!r}")
+    cells = [cell for cell in surface.cells.values() if cell.character != " "]
+    inks = sorted({(cell.colour, cell.background) for cell in cells})
+    found += [f"characters: {len(cells)} in {inks}"] if cells else []
+    found += ["text " + " ".join(map(str, (*each[:4], *each.font))) for each in surface.texts]
+    tables = " ".join("/".join("%02x%02x%02x" % each for each in surface.tables[table]) for table in surface.tables)
+    return [*found, f"table {surface.table}, softkeys {surface.softkeys} in {surface.softkey_colours}, {tables}"]
+
+
+def show(bench: Bench, *calls: Place) -> None:
+    """Write down what calls of a screen's functions leave: each is a name and its arguments."""
+    done = []
+    for name, *arguments in calls:
+        asked = shown_order(arguments).replace("OMITTED", "")
+        answer = bench.call(str(name), *arguments)
+        done.append(f"{name}({asked})" + ("" if answer == "0" else f" {answer}"))
+    bench.lines += ["", f"== {' '.join(done)}"]
+    for each in picture(bench.pnc.screen()):
+        if each not in bench.seen:
+            bench.lines.append(each)
+    bench.seen = set(picture(bench.pnc.screen()))

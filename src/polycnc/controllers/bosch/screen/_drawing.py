@@ -31,6 +31,7 @@ class Drawing:
         self._edges = self.window
         self._at = (0.0, 0.0)
         self._circle: list[float | None] = [None] * 6
+        self._radius: float | None = None
         self.functions: Mapping[str, Callable[..., object]] = {
             "GMD": self._gmd, "GWD": self._gwd, "MWD": self._mwd, "LIN": self._lin, "CIR": self._cir, "FIL": self._fil,
             "CLR": self._clr,
@@ -72,7 +73,7 @@ class Drawing:
             raise Fault("INVALID PARAMETER", "a circle has centre and radius, an arc start, end and centre")
         if len(places) == 3:
             x, y, radius = (
-                _or(each, old) for each, old in zip(places, (*self._circle[4:], None), strict=True)
+                _or(each, old) for each, old in zip(places, (*self._circle[4:], self._radius), strict=True)
             )
             start = end = (x + radius, y)
         else:
@@ -86,7 +87,7 @@ class Drawing:
             radius = math.dist(start, (x, y))
         if radius <= 0:
             raise Fault("INVALID PARAMETER", "a circle needs a radius above 0")
-        self._circle = [*start, *end, x, y]
+        self._circle, self._radius = [*start, *end, x, y], radius
         if len(places) == 6:
             self._at = end
         begin = math.atan2(start[1] - y, start[0] - x)
