@@ -160,8 +160,8 @@ def picture(surface: Surface) -> list[str]:
         if len(x):
             edges = f"{x.min()}-{x.max()} x {y.min()}-{y.max()}"
             found.append(f"colour {colour}: {len(x)} pixels, {edges}, sum {int((x * 7 + y * 13).sum())}")
-    for row, cells in enumerate(surface.lines(), 1):
-        if shown := cells.rstrip():
+    for row, written in enumerate(surface.lines(), 1):
+        if shown := written.rstrip():
             found.append(f"line {row}: {shown!r}")
     cells = [cell for cell in surface.cells.values() if cell.character != " "]
     inks = sorted({(cell.colour, cell.background) for cell in cells})

@@ -269,15 +269,12 @@ def signals(b: Bench) -> None:
     b.pnc.control.emergency_stop()
     b.pnc.advance(5)
     cases = [(channel, kind, 9) for channel in (-2, -1, 0, 1, 2, 3) for kind in (0, 2, 5, 6, 8)]
-    for channel, kind, count in [
-        *cases,
-        *((-1, kind, 9) for kind in (-1, 10, 11)),
-        *((-1, 0, n) for n in (0, 1, 2, 1.5)),
-    ]:
+    counts = [(-1, 0, count) for count in (0, 1, 2, 1.5)]
+    for channel, category, count in [*cases, *((-1, each, 9) for each in (-1, 10, 11)), *counts]:
         errors = Field("I", (4, 3))
-        found = b.call("GETERR", channel, kind, errors, count)
+        found = b.call("GETERR", channel, category, errors, count)
         rows = " ".join("/".join(str(errors[row, column]) for column in (1, 2, 3)) for row in range(1, 5))
-        b.note(f"GETERR({channel},{kind},E%,{count}) {found}", rows)
+        b.note(f"GETERR({channel},{category},E%,{count}) {found}", rows)
     for tab in Tab:
         b.note(f"window of {tab.name}", " / ".join(" ".join(each) for each in b.pnc.information(tab)))
     b.pnc.control.emergency_stop(False)

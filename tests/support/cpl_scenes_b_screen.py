@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 import struct
+from contextlib import suppress
 
+from polycnc.controllers.bosch.screen import KEYS
+from polycnc.errors import UsageError
 from polycnc.nc.cpl import OMITTED
-from support.cpl_scenes_b import Bench, scene
+from support.cpl_scenes_b import Bench, Place, scene
 from support.cpl_scenes_b_asked import show
 
 _ = OMITTED
@@ -86,10 +89,17 @@ def screen(b: Bench) -> None:
     for more in ((0, 4, 5), (0, 6), (5, 2, 5), (6, 2), (-1, 2), (0, 8), (0, -1), (0, 7, 8)):
         show(b, ("FIL", 20, 20, *more))
     show(b, ("FIL", 633, 20, 0, 3), ("FIL", 20, 375, 0, 3), ("CLG",), ("DLF",))
-    for place in ((0, 1), (7, 7), (8,), (-1,), (1.5,), (_, 3, 1), (_, _, 6)):
-        show(b, ("CLS",), ("COL", *place), ("LIN", 1, 1, 4, 1), ("DSP", 1, 1, "A"))
+    colours: list[Place] = [(0, 1), (7, 7), (8,), (-1,), (1.5,), (_, 3, 1), (_, _, 6)]
+    for codes in colours:
+        show(b, ("CLS",), ("COL", *codes), ("LIN", 1, 1, 4, 1), ("DSP", 1, 1, "A"))
     for table in (7, 10, 1, 2, 3, 4):
-        show(b, ("COL", 2, 4, 3, table, 6, 5), ("LIN", 1, 1, 9, 1), ("DSP", 3, 4, "TABLE"))
+        show(
+            b,
+            ("LIN", table, 7, 40, 8),
+            ("COL", 2, 4, 3, table, 6, 5),
+            ("LIN", 1, 1, 9, 1),
+            ("DSP", 3, 4, "TABLE"),
+        )
     for portions in (
         (0, 255, 0, 0),
         (7, 1, 2, 3),
@@ -116,7 +126,7 @@ def screen(b: Bench) -> None:
         show(b, ("GPR", *place, "GRAPHIC"))
     for font in (0, 5, 10, 11, -1):
         show(b, ("CLS",), ("TFO", font, 12, 1, 90), ("DSP", 4, 5, "FONT"))
-    for font in (
+    sizes: list[Place] = [
         (1, 500),
         (1, 501),
         (1, 0),
@@ -126,9 +136,8 @@ def screen(b: Bench) -> None:
         (1, -1),
         (1, 20008),
         (1, 1000),
-    ):
-        show(b, ("CLS",), ("TFO", *font), ("GPR", 9, 9, "F"))
-    for font in (
+    ]
+    cuts: list[Place] = [
         (1, 8, 3, 360),
         (1, 8, 4),
         (1, 8, -1),
@@ -137,10 +146,17 @@ def screen(b: Bench) -> None:
         (_, _, 3),
         (5, 8, 0, 45),
         (0, 0, 0, 0),
-    ):
-        show(b, ("CLS",), ("TFO", *font), ("GPR", 9, 9, "F"))
+    ]
+    for chosen in (*sizes, *cuts):
+        show(b, ("CLS",), ("TFO", *chosen), ("GPR", 9, 9, "F"))
     for copy in (_, 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, -1):
         show(b, ("CLS",), ("COL", 3), ("LIN", 20, 40, 21, 40), ("BMP", 20, 40, "m", copy))
     for place in ((0, 0), (632, 374), (633, 0), (0, 375), (-1, 0), (0, -1)):
         show(b, ("CLS",), ("BMP", *place, "m"))
+    b.say("keys that INKEY and SFK read, in the order in which they were pressed")
+    for key in ("\x01", "A", "a", "~", "\x7f", "\x80", "AB", "", *KEYS):
+        with suppress(UsageError):
+            b.pnc.press(key)
+            b.note(f"{key!r}", b.call("INKEY"))
+    b.note("none", b.call("INKEY"))
     show(b, ("BMP", 1, 1, "none"), ("BMP", 1, 1, "n" * 70), ("BMP", 1, 1, "n" * 71), ("BMP", 1, 1, "../m"))

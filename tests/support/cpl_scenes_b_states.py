@@ -39,7 +39,7 @@ def states(b: Bench) -> None:
     b.pnc.cycle_start()
     b.look("started", 1)
     b.look("in N3, the spindle speeds up", 160)
-    b.pnc.advance(2000, until=lambda: b.pnc.axes["X"].velocity > 5.0)
+    b.pnc.advance(2000, until=lambda: b.pnc.axes["X"].velocity > 25.0)
     b.pnc.feed_hold(channel=1)
     b.look("held: it runs down", 4)
     b.look("held: stopped", 200)

@@ -277,7 +277,7 @@ class Control:
         return self._time.has_enough
 
     def set_observer(self, watch: CycleWatch | None, beside: Beside | None = None) -> None:
-        """Let somebody look at every cycle while it is awake, time passes slower then; snapshots keep what is `beside`."""
+        """Let somebody look at every cycle while awake (time passes slower); snapshots keep what is `beside`."""
         self._time.watch, self._parts.beside = watch, beside
 
     def _sub_program(self, number: int) -> ProgramText | None:

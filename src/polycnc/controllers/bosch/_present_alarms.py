@@ -23,7 +23,11 @@ class PresentAlarms:
             error = self._noted.pop(gone)
             self._errors.errors = [each for each in self._errors.errors if each[:4] != error[:4]]
         for alarm in alarms:
-            if alarm in self._noted or alarm.kind is AlarmKind.PROGRAM or (alarm.name, alarm.channel) in known:
+            if (
+                alarm in self._noted
+                or alarm.kind is AlarmKind.PROGRAM
+                or (alarm.name, alarm.channel) in known
+            ):
                 continue
             channel = ALL_CHANNELS if alarm.channel is None else alarm.channel + 1
             category = Category.PLC if alarm.kind is AlarmKind.PLC else Category.CONTROL_OR_DRIVE

@@ -233,10 +233,12 @@ class BoschSystem:
                 self.note_error(number, code, category, text)
             self._noted[number] = run.channel, len(found)
         runs = {number: self.channels.run(number) for number in self.axes.channels}
-        known = {
-            (run.alarm.code, number - 1) for number, run in runs.items() if run is not None and run.alarm is not None
+        by_runs = {
+            (run.alarm.code, number - 1)
+            for number, run in runs.items()
+            if run is not None and run.alarm is not None
         }
-        self._alarms.note(self.channels.alarms(), known, self.clock.now)
+        self._alarms.note(self.channels.alarms(), by_runs, self.clock.now)
 
     def forget_errors(self, channel: int) -> None:
         """Forget the errors of a channel: it was reset."""
