@@ -301,6 +301,10 @@ def shown_order(order: Sequence[object]) -> str:
 SCENES: dict[str, Callable[[Bench], None]] = {}
 
 
+REFERENCES = {"references"}
+"""The scenes whose axes have to be referenced after power-up."""
+
+
 def scene(act: Callable[[Bench], None]) -> Callable[[Bench], None]:
     """Make a function a scene of a control."""
     SCENES[act.__name__] = act

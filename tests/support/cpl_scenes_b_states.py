@@ -290,3 +290,22 @@ def waits(b: Bench) -> None:
     b.run("N1 G70 G1 V0.25 C2=7 W1 F300\nN2 M0", 300)
     b.look("channel 1 moves V, C2 and W, which were others'", 0)
     b.look("the same as data", 0, b.system_data)
+
+
+@scene
+def references(b: Bench) -> None:
+    """Axes are referenced one after the other; a program starts when those of its channel are."""
+    pnc, given = b.pnc, Orders(b)
+    b.write("main2", "N1 G1 X2=1 F600\n")
+    b.look("power on")
+    for axis in ("W", "X2", "C2", "V", "X"):
+        pnc.select_mode(Mode.AUTOMATIC)
+        pnc.select_program("main2", channel=2)
+        b.note("select and start", f"{given.give((6,))}: {given.state()}")
+        b.attempt("start of channel 2", lambda: pnc.cycle_start(channel=2))
+        pnc.reset()
+        pnc.advance(100)
+        pnc.select_mode(Mode.REFERENCE)
+        b.attempt("reference", lambda name=axis: pnc.control.reference(name))
+        b.look(f"{axis} searches its reference point", 1)
+        b.look(f"{axis} is referenced", 8000)

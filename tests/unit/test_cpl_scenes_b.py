@@ -13,7 +13,7 @@ import pytest
 
 from polycnc.conformance import State, load_conformance
 from support import cpl_scenes_b_data, cpl_scenes_b_screen, cpl_scenes_b_states
-from support.cpl_scenes_b import SCENES, Bench
+from support.cpl_scenes_b import REFERENCES, SCENES, Bench
 
 RECORDED = Path(__file__).parents[1] / "golden" / "cpl_b"
 assert cpl_scenes_b_data, cpl_scenes_b_screen and cpl_scenes_b_states
@@ -45,7 +45,7 @@ def rows_of(name: str) -> list[str]:
 def test_a_control_tells_what_is_written_down(
     name: str, tmp_path: Path, request: pytest.FixtureRequest
 ) -> None:
-    bench = Bench(tmp_path)
+    bench = Bench(tmp_path, references=name in REFERENCES)
     try:
         SCENES[name](bench)
     except Exception:
