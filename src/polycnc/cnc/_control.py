@@ -13,7 +13,7 @@ from pathlib import Path
 from polycnc.cnc._alarms import MOST_MESSAGE_CHARACTERS, Alarm
 from polycnc.cnc._control_checks import wrong_mode
 from polycnc.cnc._control_data import ChannelData, ControlData, Mode, Overrides, Switches
-from polycnc.cnc._control_parts import check_shares, make_parts
+from polycnc.cnc._control_parts import Beside, check_shares, make_parts
 from polycnc.cnc._control_snapshot import ControlSnapshot, Keeping
 from polycnc.cnc._control_time import Condition, ControlEvent, ControlTime, CycleWatch
 from polycnc.cnc._inventory import Inventory, InventoryReader
@@ -276,9 +276,9 @@ class Control:
         """Whether its thread has more to do now than to let the time of this pass."""
         return self._time.has_enough
 
-    def set_observer(self, watch: CycleWatch | None) -> None:
-        """Let somebody look at every cycle for as long as it is awake; time passes slower then."""
-        self._time.watch = watch
+    def set_observer(self, watch: CycleWatch | None, beside: Beside | None = None) -> None:
+        """Let somebody look at every cycle while awake (time passes slower); snapshots keep what is `beside`."""
+        self._time.watch, self._parts.beside = watch, beside
 
     def _sub_program(self, number: int) -> ProgramText | None:
         names = (name.format(number=number) for name in self.data.sub_program_names)

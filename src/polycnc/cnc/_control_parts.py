@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import partial
+from typing import Any, Protocol
 
 from polycnc.cnc._alarms import AlarmList, OperatorMessages
 from polycnc.cnc._auxiliary import AuxiliaryFunctions
@@ -23,6 +24,16 @@ from polycnc.cnc._timers import PartCounter, Timers
 from polycnc.errors import shown
 from polycnc.machine import Clock, Machine, MachineConfig
 from polycnc.nc import Dialect, Event, Language, Library, language_for
+
+
+class Beside(Protocol):
+    """What a device holds beside its control, to be kept in the control's snapshots."""
+
+    def save(self) -> dict[str, Any]:
+        """Return it as plain data."""
+
+    def restore(self, data: Mapping[str, Any]) -> None:
+        """Go back to what was saved, or to nothing for no data."""
 
 
 @dataclass(slots=True)
@@ -52,6 +63,7 @@ class ControlParts:
     manual: ManualMotion
     emergency: Emergency = Emergency.OFF
     relative_zero: list[float] = field(default_factory=list)
+    beside: Beside | None = None
 
     def channel(self, number: int) -> ControlChannel:
         """Return a channel by its number, from 0.

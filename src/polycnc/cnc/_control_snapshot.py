@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, field
 from typing import Any, Self
 
 from pydantic import TypeAdapter, ValidationError
@@ -68,6 +68,7 @@ class ControlMoment:
     alarms: tuple[Alarm, ...]
     messages: tuple[OperatorMessage, ...]
     timers: TimersState
+    beside: dict[str, Any] = field(default_factory=dict)
 
 
 _MOMENT = TypeAdapter(ControlMoment)
@@ -138,6 +139,7 @@ def moment_of(of: ControlParts, raised: int) -> ControlMoment:
         relative_zero=tuple(of.relative_zero),
         raised=raised,
         channels=tuple(_of_channel(channel, of.functions.serials(channel.path)) for channel in of.channels),
+        beside={} if of.beside is None else of.beside.save(),
         **{name: getattr(of, name).snapshot() for name in _PARTS},
     )
 
@@ -152,6 +154,8 @@ def restore_state(of: ControlParts, moment: ControlMoment, runs: tuple[ProgramRu
     of.functions.restore((n, kept.waiting) for n, kept in enumerate(moment.channels))
     for name in _PARTS:
         getattr(of, name).restore(getattr(moment, name))
+    if of.beside is not None:
+        of.beside.restore(moment.beside)
 
 
 def _of_channel(channel: ControlChannel, waiting: tuple[int, ...]) -> ChannelMoment:

@@ -14,7 +14,7 @@ from polycnc.cnc._stops import Step
 from polycnc.errors import UsageError
 from polycnc.kernel import drop_queue, give_to_path
 from polycnc.machine import Machine
-from polycnc.nc import Channel, ProgramText
+from polycnc.nc import Channel, ModalWords, ProgramText
 
 
 class RunSelection:
@@ -76,6 +76,16 @@ class RunSelection:
         """Where the calculated search of a block has come to (machine coordinates, mm or degree), None if none was."""
         channel = self._runner.channel
         return tuple(channel.state.modal.position.tolist()) if channel.seeking else self._moment.searched
+
+    def opening_words(self) -> ModalWords:
+        """Return the modal words with which the program begins anew."""
+        runner = self._runner
+        levels = self._moment.block_delete
+        channel = self._channels.make(
+            self.program, levels, before=runner.channel, keeps_modal=False, attaches=False
+        )
+        channel.state.tool = runner.channel.state.tool
+        return channel.records.words(self.program, channel.state.snapshot())
 
     def begin(self, step: Step) -> None:
         """Begin the program from where the axes stand, and go as far as `step` says.

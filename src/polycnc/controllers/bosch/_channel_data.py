@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from dataclasses import replace
 from typing import Any, cast
 
 from polycnc.cnc import ProgramRun
 from polycnc.controllers.bosch._axes import SystemAxes
-from polycnc.controllers.bosch._channel_ports import ChannelPorts
+from polycnc.controllers.bosch._channel_ports import CUTTING, ChannelPorts, SpindleNow
 from polycnc.controllers.bosch.ncs import Mode
 from polycnc.controllers.bosch.system import SD_GROUPS, LastFunctions, Moment, ProgrammedShifts, SystemData
 from polycnc.nc import Group, ModalWords
@@ -19,7 +20,8 @@ _SEARCH = 10
 _SENSES = {1: 3, -1: 4, 0: 0}
 _ORIENTED = 19
 _OFF = (53, 153, 253, 67, 39, 146, 167)
-"""What is in force of groups of which nothing was programmed."""
+"""What is in force of groups of which nothing was programmed; the last switches external zero shifts off."""
+_EXTERNAL = frozenset(("G160", "G260", "G360", "G167"))
 _STATED = (
     Group.MOTION, Group.DISTANCE, Group.UNITS, Group.PLANE, Group.FEED_MODE, Group.RADIUS_COMPENSATION,
 )  # fmt: skip
@@ -61,20 +63,22 @@ class ChannelData:
         state = run.channel.state
         programmed, executed = self.programmed(), run.reading.modal
         once = programmed.placement.once
-        override, rpm = self._channels.spindle()
-        overrides = {_SPINDLE: override * 100.0}
+        now = self._channels.spindle()
+        overrides = {_SPINDLE: now.override * 100.0}
         turning = programmed if executed is None else executed
+        rpm = now.actual_rpm
         if rpm is None:
             rpm = turning.speed if turning.spindle_direction else 0.0
         probe = state.probe
         config = run.machine.config
+        own = [config.axes[axes.index(number)] for number in axes.channels[self._number]]
         return SystemData(
             channel=self._number,
             programmed=_later(lambda: self._moment(programmed)),
-            active=_later(lambda: self._moment(turning)),
+            active=_later(lambda: self._active(turning, now)),
             block_function=0 if once in _GROUP_OF else once,
             feed_override=run.overrides.feed * 100.0,
-            rapid=max((axis.vmax * 60.0 for axis in config.axes if axis.unit == "mm"), default=0.0)
+            rapid=max((axis.vmax * 60.0 for axis in own if axis.unit == "mm"), default=0.0)
             / (25.4 if programmed.inch else 1.0),
             spindle_overrides=overrides,
             actual_rpm={_SPINDLE: rpm},
@@ -88,6 +92,18 @@ class ChannelData:
                 enumerate(self._by_axis(run.selection.searched or (), state.modal.scale), 1)
             ),
             machining_axes=frozenset(range(1, len(axes.channels[self._number]) + 1)),
+        )
+
+    def _active(self, words: ModalWords, now: SpindleNow) -> Moment:
+        """Return what holds with the executed block; the spindle may turn since a program before."""
+        moment = self._moment(words)
+        if now.actual_rpm is None or not moment.senses:
+            return moment
+        cutting = words.g.get(Group.SPINDLE_MODE) in CUTTING
+        return replace(
+            moment,
+            speeds_rpm={_SPINDLE: words.speed if cutting else now.programmed_rpm},
+            senses={_SPINDLE: _ORIENTED if now.oriented else _SENSES[now.direction]},
         )
 
     def _machining_mode(self) -> int:
@@ -138,7 +154,7 @@ class ChannelData:
         if words.placement.plane is not None:
             said.append(20)
         found = {_GROUP_OF[code]: code for code in said if code in _GROUP_OF}
-        for off in _OFF:
+        for off in _OFF[: -1 if words.placement.offsets else None]:  # G260 and G360 are in no group of SD(1)
             found.setdefault(_GROUP_OF[off], off)
         return set(found.values())
 
@@ -191,12 +207,14 @@ class ChannelData:
     def _last(self) -> LastFunctions:
         words = self.programmed()
         numbered = (*SD_GROUPS.values(), *_OTHER_GROUPS)
-        groups = [frozenset(f"G{code}" for code in group) for group in numbered]
+        groups = [_EXTERNAL, *(frozenset(f"G{code}" for code in group) for group in numbered)]
         groups += [frozenset(group) for group in _M_GROUPS]
         last = LastFunctions(groups)
         for code in (*words.placement.codes, *sorted(self.codes(words))):
             if any(code in group for group in numbered):
                 last.program(f"G{code}")
+        for name in words.placement.offsets[-1:]:
+            last.program(name)
         for name in (
             "M19" if words.spindle_oriented else {1: "M3", -1: "M4", 0: "M5"}[words.spindle_direction],
             *(f"M{code}" for code in (*words.coolant, *words.m)),

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import NamedTuple, Protocol
 
-from polycnc.cnc import AxisStatus, Control, Mode, ProgramRun, RunState
+from polycnc.cnc import Alarm, AxisStatus, Control, Emergency, Mode, Overrides, ProgramRun, RunState, Switches
 from polycnc.controllers.bosch.ncs import Mode as BoschMode
 from polycnc.kernel import PIDF
 from polycnc.machine import Machine
@@ -17,10 +17,15 @@ MODES = {
 }  # fmt: skip
 """Modes that can be selected, and what they are for the control within."""
 
+CUTTING = ("G96", "G196")
+"""What makes S a cutting speed."""
+
 _SHOWN = {
     Mode.AUTO: BoschMode.AUTOMATIC,
     Mode.MDI: BoschMode.MDI,
     Mode.JOG: BoschMode.JOG,
+    Mode.INC: BoschMode.JOG,
+    Mode.HANDLE: BoschMode.JOG,
     Mode.REF: BoschMode.REFERENCE,
 }
 
@@ -33,6 +38,16 @@ class Selected(NamedTuple):
 
     program: str
     searched: bool = False
+
+
+class SpindleNow(NamedTuple):
+    """The spindle; `actual_rpm` is None where there is none but in programs, which alone know the rest then."""
+
+    override: float
+    actual_rpm: float | None = None
+    programmed_rpm: float = 0.0
+    direction: int = 0
+    oriented: bool = False
 
 
 class ChannelPorts(Protocol):
@@ -69,8 +84,20 @@ class ChannelPorts(Protocol):
     def axes(self) -> Mapping[str, AxisStatus]:
         """Return the axes of the machine in the present cycle."""
 
-    def spindle(self) -> tuple[float, float | None]:
-        """Return the override of the spindle and its actual speed (rpm), None where it is the programmed one."""
+    def overrides(self, number: int) -> Overrides:
+        """Return the overrides of a channel."""
+
+    def switches(self, number: int) -> Switches:
+        """Return what the operator has switched on for the programs of a channel."""
+
+    def needs_reset(self, number: int) -> bool:
+        """Tell whether an alarm or the emergency stop lets a channel do nothing until it is reset."""
+
+    def alarms(self) -> tuple[Alarm, ...]:
+        """Return the alarms that are on beside the errors of runs."""
+
+    def spindle(self) -> SpindleNow:
+        """Return the spindle in the present cycle."""
 
 
 class AttachedRuns:
@@ -122,9 +149,32 @@ class AttachedRuns:
         """Return the axes; all are referenced, and nobody moves them by hand."""
         return {axis.name: _axis(self.machine, place) for place, axis in enumerate(self.machine.config.axes)}
 
-    def spindle(self) -> tuple[float, float | None]:
+    def overrides(self, number: int) -> Overrides:
+        """Return 100 % before a run is attached, else those of the run."""
+        run = self._runs.get(number)
+        return Overrides() if run is None else Overrides(run.overrides.feed, run.overrides.rapid)
+
+    def switches(self, number: int) -> Switches:
+        """Return what is switched on in the run."""
+        run = self._runs.get(number)
+        if run is None:
+            return Switches()
+        on = run.switches
+        return Switches(
+            on.single_block, on.optional_stop, machine_lock=on.machine_lock, block_delete=on.block_delete
+        )
+
+    def needs_reset(self, number: int) -> bool:
+        """Return False: the run itself is in alarm then."""
+        return False
+
+    def alarms(self) -> tuple[Alarm, ...]:
+        """Return none: runs have their own."""
+        return ()
+
+    def spindle(self) -> SpindleNow:
         """Return 100 %, and no speed of its own."""
-        return 1.0, None
+        return SpindleNow(1.0)
 
 
 def _axis(machine: Machine, place: int) -> AxisStatus:
@@ -154,6 +204,17 @@ class DeviceChannels:
 
     def attach(self, number: int, run: ProgramRun) -> None:
         """Do nothing: the control has its runs."""
+
+    def save(self) -> tuple[dict[str, int], dict[str, str]]:
+        """Return modes and missing programs as plain data."""
+        modes = {str(number): int(mode) for number, mode in self._modes.items()}
+        return modes, {str(number): name for number, name in self._missing.items()}
+
+    def restore(self, saved: tuple[dict[str, int], dict[str, str]]) -> None:
+        """Go back to modes and missing programs."""
+        modes, missing = saved
+        self._modes = {int(number): BoschMode(mode) for number, mode in modes.items()}
+        self._missing = {int(number): name for number, name in missing.items()}
 
     def select_mode(self, numbers: Sequence[int], mode: BoschMode) -> None:
         """Note the mode that was selected: several are one for the control within."""
@@ -215,7 +276,26 @@ class DeviceChannels:
         """Return the axes of the control's status."""
         return self._control.axes()
 
-    def spindle(self) -> tuple[float, float | None]:
-        """Return the override of the spindle and its actual speed (rpm)."""
-        now = self._control.spindle.state()
-        return now.override, abs(now.actual_rpm)
+    def overrides(self, number: int) -> Overrides:
+        """Return the overrides of a channel."""
+        return self._control.channels[number - 1].overrides
+
+    def switches(self, number: int) -> Switches:
+        """Return what the operator has switched on for the programs of a channel."""
+        return self._control.channels[number - 1].switches
+
+    def needs_reset(self, number: int) -> bool:
+        """Tell whether an alarm or the emergency stop lets a channel do nothing until it is reset."""
+        return self._control.channels[number - 1].broken or self._control.emergency is not Emergency.OFF
+
+    def alarms(self) -> tuple[Alarm, ...]:
+        """Return the alarms that are on."""
+        return self._control.alarms.active
+
+    def spindle(self) -> SpindleNow:
+        """Return the spindle in the present cycle."""
+        spindle = self._control.spindle
+        now = spindle.state()
+        return SpindleNow(
+            now.override, abs(now.actual_rpm), now.programmed_rpm, now.direction, spindle.is_orienting
+        )

@@ -21,6 +21,7 @@ from polycnc.cnc import (
 from polycnc.controllers.bosch._axes import SystemAxes
 from polycnc.controllers.bosch._channel_host import ChannelHost
 from polycnc.controllers.bosch._channel_ports import MODES, DeviceChannels
+from polycnc.controllers.bosch._device_moment import DeviceMoment
 from polycnc.controllers.bosch._dialogs import DialogCalls
 from polycnc.controllers.bosch._operator import DeviceOperator
 from polycnc.controllers.bosch._parameters import DIALOG_CHANNEL
@@ -89,7 +90,7 @@ class Pnc:
         self.ncs = NcsServer(self.services)
         """Where programs of other controls ask this one; changes of what they asked for are noted in every cycle."""
         self.server = server or self.ncs
-        self._control.set_observer(self.ncs)
+        self._control.set_observer(self.ncs, beside=DeviceMoment(self._channels, self.system))
         for number, channel in enumerate(self._control.channels, 1):
             host = ChannelHost(
                 self.system, number, keys=keys if number == 1 else (), server=self.server, in_device=True,
@@ -137,6 +138,8 @@ class Pnc:
             SnapshotError: It is of something else; nothing has changed.
         """
         self._control.restore(snapshot)
+        for host in self.hosts:
+            host.buffer = None
 
     def close(self) -> None:
         """Keep what is permanent, and close the memory."""

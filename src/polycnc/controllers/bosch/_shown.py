@@ -9,7 +9,7 @@ import numpy as np
 
 from polycnc.cnc import AxisStatus, ProgramRun, RunState
 from polycnc.controllers.bosch._axes import SystemAxes
-from polycnc.controllers.bosch._channel_ports import ChannelPorts
+from polycnc.controllers.bosch._channel_ports import CUTTING, ChannelPorts, SpindleNow
 from polycnc.controllers.bosch._positions import executed_words, workpiece
 from polycnc.controllers.bosch.ncs import (
     Axis,
@@ -38,7 +38,6 @@ from polycnc.nc import Group, ModalWords
 _INTERFACE_CHANNELS = 5
 _GROUPS = (range(54, 60), range(154, 160), range(254, 260))
 _FULL = 10000.0
-_CUTTING = ("G96", "G196")
 _NO_RADIUS = "G40"
 _GENERAL_TOOL = {"length_3": 1, "radius": 2, "length_1": 3, "length_2": 4, "orientation": 5}
 _SAV = {
@@ -136,8 +135,14 @@ class Shown:
         self._unmoved = (0.0,) * len(axes.names)
         self._now: Mapping[str, AxisStatus] | None = None
         self._blocks: dict[int, tuple[ModalWords, list[float]]] = {}
+        self._openings: dict[int, tuple[ProgramRun, object, ModalWords]] = {}
         self._read = _Axes(axes.numbers, self._axis_now)
         self.image = Image(axes=self._read, channels={number: Channel(number) for number in axes.channels})
+
+    def forget(self) -> None:
+        """Forget which blocks were seen: the control has gone back to a snapshot."""
+        self._tags.clear()
+        self._openings.clear()
 
     def renew(self) -> Image:
         """Read everything at the present cycle."""
@@ -151,9 +156,7 @@ class Shown:
         for number, shown in image.channels.items():
             self._channel(shown, number)
         image.spindles[1] = self._spindle(machine)
-        image.test_mode = any(
-            run is not None and run.switches.machine_lock for run in map(self._channels.run, image.channels)
-        )
+        image.test_mode = any(self._channels.switches(number).machine_lock for number in image.channels)
         return image
 
     def _axis_now(self, number: int) -> Axis:
@@ -203,8 +206,17 @@ class Shown:
     def _block(self, run: ProgramRun, number: int) -> tuple[ModalWords, list[float]]:
         """Return words and end of the executed block of a channel, found once in a cycle."""
         if number not in self._blocks:
-            self._blocks[number] = executed_words(run), self._ends(run)
+            self._blocks[number] = self._words(run, number), self._ends(run)
         return self._blocks[number]
+
+    def _words(self, run: ProgramRun, number: int) -> ModalWords:
+        """Return the modal words of the executed block; after a reset those of the power-up condition."""
+        if run.state is not RunState.RESET or not run.at_rest:
+            return executed_words(run)
+        kept = self._openings.get(number)
+        if kept is None or kept[0] is not run or kept[1] is not run.channel:
+            kept = self._openings[number] = run, run.channel, run.selection.opening_words()
+        return kept[2]
 
     def _ends(self, run: ProgramRun) -> list[float]:
         """Return where the executed block ends (machine coordinates)."""
@@ -217,6 +229,15 @@ class Shown:
         self._select(shown, number)
         shown.reselection = self._channels.reselects()
         shown.auxiliary_waits = self._channels.functions_wait(number)
+        shown.potentiometer = self._channels.overrides(number).feed * _FULL
+        switches = self._channels.switches(number)
+        shown.optional_stop = (switches.optional_stop, switches.optional_stop)
+        shown.skip = (bool(switches.block_delete), bool(switches.block_delete))
+        shifts, tools = self._tables()
+        shown.tool_table, shown.shift_table = tools.selected, shifts.active
+        failed = self._channels.needs_reset(number)
+        if failed:
+            shown.sav = Sav.ERROR
         if run is None:
             shown.coordinates = _Coordinates(lambda: self._at_rest(number))
             return
@@ -225,7 +246,7 @@ class Shown:
         if self._tags.get(number) != run.reading.tag:
             self._tags[number] = run.reading.tag
             shown.blocks += 1
-        self._state(shown, run, number)
+        self._state(shown, run, number, failed=failed)
         running = row["state"] == RUNNING
         shown.ipo = (
             Ipo.RUNNING if run.state is RunState.ACTIVE else Ipo.RUNNING_DOWN if running else Ipo.STOPPED
@@ -237,13 +258,11 @@ class Shown:
         moving = bool(running and not shown.dwell)
         shown.feeds = _feeds(segment, row, run.overrides.feed) if moving else (0.0, 0.0, 0.0)
         shown.programmed_feed = words.feed * (25.4 if words.inch else 1.0)
-        shown.potentiometer = run.overrides.feed * _FULL
         self._tool(shown, words)
-        shown.other_waits = (shown.other_waits & Wait.DATA_SERVICE) | _WAITS.get(run.state, Wait(0))
+        reason = Wait(0) if failed else _WAITS.get(run.state, Wait(0))
+        shown.other_waits = (shown.other_waits & Wait.DATA_SERVICE) | reason
         if self._waits(number):
             shown.other_waits |= Wait.SIGNAL_OR_TIME
-        shown.optional_stop = (run.switches.optional_stop, run.switches.optional_stop)
-        shown.skip = (bool(run.switches.block_delete), bool(run.switches.block_delete))
         if shown.sav is Sav.ACTIVE and not running and self._buffer_empty(number):
             shown.sav = Sav.BUFFER_EMPTY
         shown.coordinates = _Coordinates(lambda: self._coordinates(run, number))
@@ -257,10 +276,10 @@ class Shown:
         else:
             shown.sav = Sav.READY if selected.searched else Sav.AT_START
 
-    def _state(self, shown: Channel, run: ProgramRun, number: int) -> None:
+    def _state(self, shown: Channel, run: ProgramRun, number: int, *, failed: bool) -> None:
         """Show what is executed."""
         if run.state in _SAV:
-            shown.sav = _SAV[run.state]
+            shown.sav = Sav.ERROR if failed else _SAV[run.state]
             shown.program = "" if self._channels.is_by_hand(number) else run.program.name
         elif run.state is RunState.RESET and not run.at_rest:
             shown.sav = Sav.RESET
@@ -275,8 +294,7 @@ class Shown:
 
     def _tool(self, shown: Channel, words: ModalWords) -> None:
         """Show the compensations of the executed block."""
-        shifts, tools = self._tables()
-        shown.tool_table, shown.shift_table = tools.selected, shifts.active
+        _, tools = self._tables()
         values, codes = tools.values, words.placement.compensations
         cutting = words.g.get(Group.RADIUS_COMPENSATION, _NO_RADIUS) != _NO_RADIUS
         shown.length_number = words.h or -1
@@ -330,30 +348,29 @@ class Shown:
         return found
 
     def _spindle(self, machine: Machine) -> Spindle:
-        run = next((run for run in map(self._channels.run, self.image.channels) if run is not None), None)
-        top = machine.config.spindle.max_rpm
-        if run is None:
-            return Spindle(limits=(0.0, top), gear_limits=(0.0, top))
-        words = run.reading.modal
-        speed = 0.0 if words is None else words.speed
-        direction = 0 if words is None else words.spindle_direction
-        override, rpm = self._channels.spindle()
-        turning = speed if direction else 0.0
-        cutting = words is not None and words.g.get(Group.SPINDLE_MODE) in _CUTTING
+        number = next((each for each in self.image.channels if self._channels.run(each) is not None), None)
+        run = None if number is None else self._channels.run(number)
+        words = None if run is None or number is None else self._block(run, number)[0]
+        now, top = self._channels.spindle(), machine.config.spindle.max_rpm
+        if now.actual_rpm is None and words is not None:
+            turning = words.speed if words.spindle_direction else 0.0
+            now = SpindleNow(
+                now.override, turning, words.speed, words.spindle_direction, words.spindle_oriented
+            )
+        cutting = words is not None and words.g.get(Group.SPINDLE_MODE) in CUTTING
+        speed = words.speed if words is not None and cutting else now.programmed_rpm
         return Spindle(
-            programmed=speed, actual=turning if rpm is None else rpm, potentiometer=override * _FULL,
+            programmed=speed, actual=now.actual_rpm or 0.0, potentiometer=now.override * _FULL,
             limits=(0.0, top), gear_limits=(0.0, top),
-            motion=_motion(words),
-            cutting_m_min=turning if cutting else None,
+            motion=_motion(now, words is not None and bool(words.coolant)),
+            cutting_m_min=(speed if now.direction else 0.0) if cutting else None,
         )  # fmt: skip
 
 
-def _motion(words: ModalWords | None) -> SpindleMotion:
-    if words is None:
-        return SpindleMotion.STOP
-    if words.spindle_oriented:
+def _motion(now: SpindleNow, wet: bool) -> SpindleMotion:
+    if now.oriented:
         return SpindleMotion.ORIENTATION
-    return (_WET if words.coolant else _MOTIONS)[words.spindle_direction]
+    return (_WET if wet else _MOTIONS)[now.direction]
 
 
 def _feeds(segment: np.void, path: np.void, override: float) -> tuple[float, float, float]:

@@ -30,6 +30,7 @@ from polycnc.controllers.bosch._parameters import (
 )
 from polycnc.controllers.bosch._permanence import Permanence
 from polycnc.controllers.bosch._positions import Positions
+from polycnc.controllers.bosch._present_alarms import PresentAlarms
 from polycnc.controllers.bosch._shown import Programs, Shown
 from polycnc.controllers.bosch._table_files import TableFiles
 from polycnc.controllers.bosch.files import Directory, StoredFile
@@ -106,6 +107,7 @@ class BoschSystem:
         self.links = LinkFiles(self.directory, str(self.parameter(LINK_FOLDER)), self.search_path)
         self.interface = Interface(len(self.axes.channels), 64, _SPINDLES, pnc=False)
         self.errors = ErrorList(len(self.axes.channels))
+        self._alarms = PresentAlarms(self.errors, _NUMBERS)
         for each in self.not_installed:
             self.note_error(ALL_CHANNELS, each.code, Category.MINOR_SYSTEM, each.what)
         self.plc = self._new_plc()
@@ -230,6 +232,13 @@ class BoschSystem:
             for code, category, text in found[count:]:
                 self.note_error(number, code, category, text)
             self._noted[number] = run.channel, len(found)
+        runs = {number: self.channels.run(number) for number in self.axes.channels}
+        by_runs = {
+            (run.alarm.code, number - 1)
+            for number, run in runs.items()
+            if run is not None and run.alarm is not None
+        }
+        self._alarms.note(self.channels.alarms(), by_runs, self.clock.now)
 
     def forget_errors(self, channel: int) -> None:
         """Forget the errors of a channel: it was reset."""

@@ -31,6 +31,7 @@ class Drawing:
         self._edges = self.window
         self._at = (0.0, 0.0)
         self._circle: list[float | None] = [None] * 6
+        self._radius: float | None = None
         self.functions: Mapping[str, Callable[..., object]] = {
             "GMD": self._gmd, "GWD": self._gwd, "MWD": self._mwd, "LIN": self._lin, "CIR": self._cir, "FIL": self._fil,
             "CLR": self._clr,
@@ -71,7 +72,9 @@ class Drawing:
         if len(places) not in (3, 6):
             raise Fault("INVALID PARAMETER", "a circle has centre and radius, an arc start, end and centre")
         if len(places) == 3:
-            x, y, radius = (_or(each, old) for each, old in zip(places, self._last_circle(), strict=True))
+            x, y, radius = (
+                _or(each, old) for each, old in zip(places, (*self._circle[4:], self._radius), strict=True)
+            )
             start = end = (x + radius, y)
         else:
             kept = [None if each is OMITTED else number(each) for each in places]
@@ -84,7 +87,7 @@ class Drawing:
             radius = math.dist(start, (x, y))
         if radius <= 0:
             raise Fault("INVALID PARAMETER", "a circle needs a radius above 0")
-        self._circle = [*start, *end, x, y]
+        self._circle, self._radius = [*start, *end, x, y], radius
         if len(places) == 6:
             self._at = end
         begin = math.atan2(start[1] - y, start[0] - x)
@@ -93,13 +96,6 @@ class Drawing:
         angles = [begin - sweep * step / steps for step in range(steps + 1)]
         self._line([self._pixel(x + radius * math.cos(a), y + radius * math.sin(a)) for a in angles])
         return 0
-
-    def _last_circle(self) -> tuple[float | None, float | None, float | None]:
-        """Return centre and radius of the last circle or arc, None where there was none."""
-        start_x, start_y, _, _, x, y = self._circle
-        if start_x is None or start_y is None or x is None or y is None:
-            return x, y, None
-        return x, y, math.dist((start_x, start_y), (x, y))
 
     def _fil(self, x: object, y: object, pattern: object, colour: object, contour: object = OMITTED) -> int:
         code = colour_code(colour)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Sequence
 from enum import IntEnum
 
 from polycnc.controllers.bosch.system._arguments import INVALID_PARAMETER, whole
@@ -58,6 +59,14 @@ class Interface:
         """Set a signal."""
         word = self._words.get((group, index), 0)
         self._words[group, index] = word | 1 << bit if value else word & ~(1 << bit)
+
+    def save(self) -> list[tuple[int, int, int]]:
+        """Return the signals as plain data: group, index, bits."""
+        return [(int(group), index, word) for (group, index), word in self._words.items()]
+
+    def restore(self, words: Iterable[Sequence[int]]) -> None:
+        """Go back to signals."""
+        self._words = {(group, index): word for group, index, word in words}
 
     def read(self, active: int, bit: object, group: object = OMITTED, index: object = OMITTED) -> bool:
         """Return the signal that IC names in channel `active`.
