@@ -218,7 +218,7 @@ class MachiningCollector:
             idle_s=tally.idle_s,
             comparison=None,
             messages=[
-                f"stock: {stock}, {stock.cell_mm:g} mm a cell{self._said}",
+                f"stock: {stock}, {stock.cell_mm:.4g} mm a cell{self._said}",
                 *self._notes,
                 *map(self._cuts_nothing, sorted(tally.unknown_tools)),
                 *([missed] if missed else []),
