@@ -77,10 +77,6 @@ class Form:
         Raises:
             UsageError: nothing is cut, or a body that no lathe turns.
         """
-        if self.fixtures or self.target is not None:
-            raise UsageError(
-                "fixtures and targets on a lathe", hint="They are for three axes: leave them out."
-            )
         if self.text == "auto":
             diameter, low, high = around_turned(course)
         elif self.text.startswith("cylinder="):

@@ -191,7 +191,7 @@ def test_cells_fit_their_body(wide: float, deep: float) -> None:
     """Those at the rim reached beyond it by up to half a cell."""
     stock = Stock(Box((2.0, 3.0, -4.0), (2.0 + wide, 3.0 + deep, 0.0)), 0.2)
     assert 0.18 < stock.cell_mm <= 0.2
-    assert stock.volume_mm3 == pytest.approx(wide * deep * 4.0, rel=2e-4)
+    assert stock.volume_mm3 == pytest.approx(wide * deep * 4.0, rel=3e-3)
 
 
 def test_a_long_strip_has_as_many_cells_as_a_square() -> None:
