@@ -14,6 +14,8 @@ from polycnc.cli._output import bold, bold_red, columns, print_json, progress_ba
 if TYPE_CHECKING:
     from polycnc.runner import Comparison, PathDeviation
 
+_SHOWN_MM = 0.00005  # what is less has no figure that is shown
+
 
 def compare_command(
     a: Annotated[Path, typer.Argument(help="A program, or a trace (.csv, .npz, .parquet).", metavar="A")],
@@ -108,7 +110,7 @@ def _deviation(found: PathDeviation) -> str:
         return "nothing moves"
     if found.mm == float("inf"):
         return f"nothing there to compare with, from line {found.line} on"
-    if not found.mm:
+    if found.mm < _SHOWN_MM:
         return "0 mm"
     place = " ".join(f"{axis}{value:.3f}" for axis, value in found.position.items())
     return f"{found.mm:.4f} mm at {place}, line {found.line}, {found.time_s:.3f} s"

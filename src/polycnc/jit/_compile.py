@@ -10,10 +10,12 @@ from types import CodeType, FunctionType
 from typing import Any
 
 import numba
+import numpy as np
 from numba.core.compiler_lock import global_compiler_lock
 from numba.core.dispatcher import OmittedArg
 from numba.core.registry import CPUDispatcher
-from numba.core.types import Omitted
+from numba.core.types import Array, BaseTuple, Omitted
+from numba.np.numpy_support import from_dtype, map_layout
 
 from polycnc.jit._cache import ContentCache
 from polycnc.jit._calls import call
@@ -24,13 +26,44 @@ from polycnc.jit._reference import by_reference
 
 # numba's own annotations leave out the options and settings that are used here.
 _njit: Any = numba.njit
+_typeof: Any = numba.typeof
 _Omitted: Any = Omitted
+_Array: Any = Array
+_Tuple: Any = BaseTuple
+_from_dtype: Any = from_dtype
+_map_layout: Any = map_layout
 _Function: Any = FunctionType  # takes the namespace as it is
 _INTERNAL, _ENTRY = pipelines()
 _making = threading.RLock()
 
 
-class _Entry(CPUDispatcher):
+class _Own(CPUDispatcher):
+    """A compiled function of types that numba has: what other packages add to it is not looked for."""
+
+    def _compilation_chain_init_hook(self) -> None:
+        """Load no extensions, which takes as long as loading a function."""
+
+    def typeof_pyval(self, value: Any) -> Any:
+        """Return the type of an argument; numba's way to those of arrays in tuples loads masked arrays."""
+        found = _type_of_arrays(value)
+        if found is None:
+            numbas: Any = super()
+            return numbas.typeof_pyval(value)
+        return found
+
+
+def _type_of_arrays(value: Any) -> Any:
+    """Return the type of an array, or of a tuple of arrays and numbers; None of all else."""
+    if type(value) is np.ndarray and value.dtype.kind in "biuf":
+        dtype, layout = _from_dtype(value.dtype), _map_layout(value)
+        return _Array(dtype, value.ndim, layout, readonly=not value.flags.writeable)
+    if isinstance(value, tuple):
+        members = [_type_of_arrays(each) or _typeof(each) for each in value]
+        return _Tuple.from_types(members, type(value))
+    return None
+
+
+class _Entry(_Own):
     """A compiled function that Python may call, and that is kept on disk."""
 
     _cache: ContentCache
@@ -63,7 +96,7 @@ class _Entry(CPUDispatcher):
                 self._cache.release()
 
 
-class _Detached(CPUDispatcher):
+class _Detached(_Own):
     """A function that is called through its address alone, and that is kept on disk."""
 
     _cache: ContentCache
@@ -77,7 +110,7 @@ class _Detached(CPUDispatcher):
                 self._cache.release()
 
 
-class _Internal(CPUDispatcher):
+class _Internal(_Own):
     """A compiled function without a wrapper, for compiled callers."""
 
     _compiler: Any

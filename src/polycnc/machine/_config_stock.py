@@ -25,4 +25,6 @@ class StockConfig(StrictModel):
 class FixtureConfig(StrictModel):
     """Describe something that tools must not touch."""
 
-    form: _Form = Field(description="`box=X0,Y0,Z0,X1,Y1,Z1` or an STL file, as for `--fixture`.")
+    form: _Form = Field(
+        description="`box=X0,Y0,Z0,X1,Y1,Z1`, `cylinder=D,Z0,Z1` or an STL file, as for `--fixture`."
+    )

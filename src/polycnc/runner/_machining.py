@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import numpy.typing as npt
@@ -28,10 +29,12 @@ from polycnc.stock import (
     Tool,
     Turned,
     TurnedCutting,
+    TurnedTarget,
     TurningCutting,
     Voxels,
     fixtures_of,
     solid_fixtures_of,
+    turned_fixtures_of,
 )
 
 Floats = npt.NDArray[np.float64]
@@ -158,9 +161,12 @@ class MachiningCollector:
         form, self._said = said_form(form, self.texts)
         if self._lathe:
             given = turning_tools_of(self._config, self.texts) if tools is None else tools
-            turned = TurningCutting(form.turned_body(course), given)
+            bar = form.turned_body(course)
+            wanted = None if form.target is None else TurnedTarget(Path(form.target), bar, form.tolerance_mm)
+            turned = TurningCutting(bar, given, turned_fixtures_of(form.fixtures, bar.cell_mm), wanted)
             turned.add(course)
-            return self._what_was_cut(turned.stock, turned.tally, form, course, given)
+            found = self._what_was_cut(turned.stock, turned.tally, form, course, given)
+            return found if wanted is None else replace(found, comparison=wanted.compare(bar))
         given = self._with_hand_tool(course, tools_of(self._config, self.texts)) if tools is None else tools
         mills = {number: tool for number, tool in given.items() if isinstance(tool, Tool)}
         undercuts = any(
@@ -218,7 +224,7 @@ class MachiningCollector:
             idle_s=tally.idle_s,
             comparison=None,
             messages=[
-                f"stock: {stock}, {stock.cell_mm:g} mm a cell{self._said}",
+                f"stock: {stock}, {stock.cell_mm:.4g} mm a cell{self._said}",
                 *self._notes,
                 *map(self._cuts_nothing, sorted(tally.unknown_tools)),
                 *([missed] if missed else []),

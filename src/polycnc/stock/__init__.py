@@ -22,6 +22,7 @@ from polycnc.stock._tool import Tool, ToolKind
 from polycnc.stock._tool_text import tool_number, tool_of_remark
 from polycnc.stock._turned import Turned
 from polycnc.stock._turned_cutting import TurnedCutting
+from polycnc.stock._turned_solid import TurnedTarget, turned_fixtures_of
 from polycnc.stock._turning import TurningCutting
 from polycnc.stock._voxels import Voxels
 
@@ -53,6 +54,7 @@ __all__ = [
     "ToolKind",
     "Turned",
     "TurnedCutting",
+    "TurnedTarget",
     "TurningCutting",
     "Voxels",
     "around",
@@ -69,4 +71,5 @@ __all__ = [
     "threading_tool",
     "tool_number",
     "tool_of_remark",
+    "turned_fixtures_of",
 ]

@@ -15,7 +15,7 @@ from polycnc.stock._voxels import MOST_VOXELS, Voxels
 T = TypeVar("T", Stock, Voxels)
 
 MOST_FIXTURES = 50
-_FORMS = "box=X0,Y0,Z0,X1,Y1,Z1 or the name of an STL file"
+_FORMS = "box=X0,Y0,Z0,X1,Y1,Z1, cylinder=D,Z0,Z1 or the name of an STL file"
 
 
 def check_fixtures(texts: Sequence[str]) -> None:
@@ -28,7 +28,9 @@ def check_fixtures(texts: Sequence[str]) -> None:
         raise UsageError(f"{len(texts)} fixtures", hint=f"At most {MOST_FIXTURES} are looked at.")
     for text in texts:
         if text.startswith("box="):
-            _box(text)
+            box_of(text)
+        elif text.startswith("cylinder="):
+            cylinder_of(text)
         elif not text.lower().endswith(".stl"):
             raise UsageError(f"'{text}' is no fixture", hint=f"Write {_FORMS}.")
 
@@ -45,8 +47,10 @@ def fixtures_of(texts: Sequence[str], cell_mm: float) -> list[Stock]:
         texts,
         cell_mm,
         lambda text: (
-            Stock(_box(text), cell_mm)
+            Stock(box_of(text), cell_mm)
             if text.startswith("box=")
+            else Stock.cylinder(*cylinder_of(text), cell_mm)
+            if text.startswith("cylinder=")
             else solid_stock(Path(text), cell_mm, lambda _: cell_mm)
         ),
         lambda fixture: fixture.heights.size,
@@ -64,8 +68,10 @@ def solid_fixtures_of(texts: Sequence[str], cell_mm: float) -> list[Voxels]:
         texts,
         cell_mm,
         lambda text: (
-            Voxels(_box(text), cell_mm)
+            Voxels(box_of(text), cell_mm)
             if text.startswith("box=")
+            else Voxels.cylinder(*cylinder_of(text), cell_mm)
+            if text.startswith("cylinder=")
             else solid_voxels(Path(text), cell_mm, lambda _: cell_mm)
         ),
         lambda fixture: fixture.cells.size,
@@ -91,6 +97,21 @@ def _made(
     return found
 
 
-def _box(text: str) -> Box:
+def box_of(text: str) -> Box:
+    """Return the box that a text tells.
+
+    Raises:
+        UsageError: it tells none.
+    """
     x0, y0, z0, x1, y1, z1 = numbers_of(text, text.partition("=")[2], 6, _FORMS)
     return Box((x0, y0, z0), (x1, y1, z1))
+
+
+def cylinder_of(text: str) -> tuple[float, float, float]:
+    """Return diameter and ends of the cylinder that a text tells.
+
+    Raises:
+        UsageError: it tells none.
+    """
+    diameter, low_z, high_z = numbers_of(text, text.partition("=")[2], 3, _FORMS)
+    return diameter, low_z, high_z

@@ -20,7 +20,7 @@ from polycnc.stock._voxels import Voxels
 
 _FINER_TURNED = 5
 CELLS_ACROSS = 1000
-"""How many cells there are along the longer side where no resolution is given."""
+"""How many cells there are across a square body where no resolution is given."""
 _FORMS = "auto, box=X0,Y0,Z0,X1,Y1,Z1, cylinder=D,Z0,Z1 or the name of an STL file"
 _TURNS = ("x", "y")
 
@@ -69,9 +69,7 @@ class Form:
         else:
             name, turned = _file_of(self.text)
             return solid_stock(Path(name), self.cell_mm, _cell_mm, turned)
-        return Stock(
-            box, self.cell_mm or _cell_mm(max(b - a for a, b in zip(box.low[:2], box.high, strict=False)))
-        )
+        return Stock(box, self.cell_mm or _cell_mm(box.across_mm))
 
     def turned_body(self, course: Rows) -> Turned:
         """Return the body that a lathe turns, for a course of the tool: X is the distance from the axis.
@@ -79,10 +77,6 @@ class Form:
         Raises:
             UsageError: nothing is cut, or a body that no lathe turns.
         """
-        if self.fixtures or self.target is not None:
-            raise UsageError(
-                "fixtures and targets on a lathe", hint="They are for three axes: leave them out."
-            )
         if self.text == "auto":
             diameter, low, high = around_turned(course)
         elif self.text.startswith("cylinder="):

@@ -127,10 +127,7 @@ def solid_stock(
         UsageError: no such file, no closed surface, or too many cells.
     """
     surface, box = _placed(path, turned)
-    stock = Stock(
-        box,
-        cell_mm or default_mm(max(b - a for a, b in zip(box.low[:2], box.high, strict=False))),
-    )
+    stock = Stock(box, cell_mm or default_mm(box.across_mm))
     stock.heights[...] = stock.grid.bottom
     grid = stock.grid
     draw(np.ascontiguousarray(surface.vertices[surface.faces]), grid.x0, grid.y0, grid.cell_mm, grid.z)

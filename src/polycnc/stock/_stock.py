@@ -20,6 +20,7 @@ FARTHEST_MM = 1e6
 """That a corner of a body may be from zero."""
 CELLS_MM = (1e-4, 1e4)
 """Narrowest and widest cell."""
+_LEAST_ACROSS = 0.1
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,9 +41,24 @@ class Box:
                 hint=f"Corners are at most {FARTHEST_MM:,.0f} mm from zero.",
             )
 
+    @property
+    def across_mm(self) -> float:
+        """The side of a square as large as it is seen from above, and at least a tenth of its longer side."""
+        wide, deep = self.high[0] - self.low[0], self.high[1] - self.low[1]
+        return max(math.sqrt(max(0.0, wide * deep)), _LEAST_ACROSS * max(wide, deep))
+
     def __str__(self) -> str:
         size = " x ".join(f"{b - a:g}" for a, b in zip(self.low, self.high, strict=True))
         return f"box of {size} mm"
+
+
+def fitted_cell(cell_mm: float, wide_mm: float, deep_mm: float) -> float:
+    """Return the width of cells, at most `cell_mm`, of which both sides of a body hold a whole number, or nearly."""
+    cell_mm = min(cell_mm, wide_mm, deep_mm)
+    first = math.ceil(wide_mm / cell_mm - 1e-9)
+    cells = np.append(cell_mm, wide_mm / np.arange(first, first + max(1, first // 10) + 1))
+    beyond = sum(np.ceil(side / cells - 1e-9) * cells - side for side in (wide_mm, deep_mm))
+    return float(cells[np.argmin(np.round(beyond / cells, 2))])
 
 
 def check_cell(cell_mm: float) -> None:
@@ -59,7 +75,7 @@ def check_cell(cell_mm: float) -> None:
 class Stock:
     """Hold what is left of a body above its bottom: one height for each cell of a grid.
 
-    `box` is what the field covers (mm), `cell_mm` the width of a cell, at most that of the body.
+    `box` is what the field covers (mm), `cell_mm` the width of a cell, at most: one that fits the body is taken.
     Undercuts cannot be told.
 
     Raises:
@@ -73,7 +89,7 @@ class Stock:
                 f"a {box} has no volume", hint="Give its lower corner first, then its upper one."
             )
         check_cell(cell_mm)
-        cell_mm = min(cell_mm, *sizes[:2])
+        cell_mm = fitted_cell(cell_mm, *sizes[:2])
         counts = [max(1, math.ceil(size / cell_mm - 1e-9)) for size in sizes[:2]]
         if counts[0] * counts[1] > MOST_CELLS:
             enough = math.sqrt(sizes[0] * sizes[1] / MOST_CELLS)

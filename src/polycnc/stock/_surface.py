@@ -9,13 +9,13 @@ import numpy.typing as npt
 
 from polycnc.kernel import compiled, entry
 from polycnc.stock._chords import chord
+from polycnc.stock._lowest import FAR, lowest
 from polycnc.stock._profile import TO_R
-from polycnc.stock._sweep import AT_X, AT_Y, DEPTH_MM, lowest, span
+from polycnc.stock._sweep import AT_X, AT_Y, DEPTH_MM, span
 
 Floats = npt.NDArray[np.float64]
 Integers = npt.NDArray[np.int64]
 
-_FAR = 1e300
 _AROUND = 0.75  # cells: more than from the middle of one to its corner
 _LEAST_UP = -1e-3
 
@@ -100,7 +100,7 @@ def _depth(
     if sideways <= 0.0:
         return 0.0
     low = lowest(rows, beside * beside, slope, -along, length - along)
-    if low >= 0.5 * _FAR:
+    if low >= 0.5 * FAR:
         return 0.0
     downwards = point[2] - (begin[2] + slope * along + low)
     if downwards <= 0.0:

@@ -1,8 +1,6 @@
 """Sweep a rotating body along chords over a height field: cut what is in its way, or measure how deep it would be in.
 
 All lengths are mm. A field is a grid of heights [rows along y, columns along x] at the middle of its cells.
-Over one cell the lowest point of the body is the least of `slope * s + h(distance)` along the chord, which each piece
-of the outline has in closed form; only a rounded corner on a slope is found step by step.
 """
 
 from __future__ import annotations
@@ -15,13 +13,11 @@ import numpy.typing as npt
 
 from polycnc.kernel import compiled, entry
 from polycnc.stock._chords import chord
-from polycnc.stock._profile import ARC_R, BEGIN_Z, CENTRE_R, CENTRE_Z, FROM_R, SLOPE, TO_R
+from polycnc.stock._lowest import FAR, level, lowest_of, shape_of
+from polycnc.stock._profile import TO_R
 
 Floats = npt.NDArray[np.float64]
 
-_FAR = 1e300
-_CORNER_MM = 1e-6
-_STEPS_TO_CORNER = 48
 _BOUNDS = 1024
 _CELLS_A_STEP = 5  # most are left as they are
 _ROUNDING_MM = 1e-9
@@ -53,122 +49,6 @@ FIGURES = 6
 
 
 @compiled
-def _outline(row: Floats, r: float) -> float:
-    """Return the height of a piece of an outline at radius `r`."""
-    if row[ARC_R] > 0.0:
-        left = row[ARC_R] * row[ARC_R] - (r - row[CENTRE_R]) ** 2
-        return float(row[CENTRE_Z] - math.sqrt(max(0.0, left)))
-    return float(row[BEGIN_Z] + row[SLOPE] * (r - row[FROM_R]))
-
-
-@compiled
-def level(rows: Floats, r: float) -> float:
-    """Return the height of an outline at radius `r`."""
-    for i in range(rows.shape[0]):
-        if r <= rows[i, TO_R]:
-            return _outline(rows[i], r)
-    return _FAR
-
-
-@compiled
-def _at(row: Floats, q2: float, slope: float, w: float) -> tuple[float, float]:
-    """Return `slope * w + outline` of a piece, and which way that rises with `w`: a number of the sign of its slope."""
-    if row[ARC_R] <= 0.0:
-        if row[SLOPE] == 0.0:
-            return slope * w + row[BEGIN_Z], slope
-        d = math.sqrt(q2 + w * w)
-        return slope * w + _outline(row, d), slope * d + row[SLOPE] * w
-    if row[CENTRE_R] <= 0.0:  # a ball needs one root alone
-        root = math.sqrt(max(0.0, row[ARC_R] * row[ARC_R] - (q2 + w * w)))
-        return slope * w + (row[CENTRE_Z] - root), slope * root + w
-    d = math.sqrt(q2 + w * w)
-    over = d - row[CENTRE_R]
-    root = math.sqrt(max(0.0, row[ARC_R] * row[ARC_R] - over * over))
-    return slope * w + (row[CENTRE_Z] - root), slope * root * d + over * w
-
-
-@compiled
-def _on_corner(row: Floats, q2: float, slope: float, low: float, high: float) -> float:
-    """Return where from `low` to `high`, between which it is, a corner is lowest, to `_CORNER_MM` in height."""
-    w = min(max(0.0, low), high)
-    for _ in range(_STEPS_TO_CORNER):
-        d = math.sqrt(q2 + w * w)
-        over = d - row[CENTRE_R]
-        root = math.sqrt(max(1e-12, row[ARC_R] * row[ARC_R] - over * over))
-        rise, share = over / root, w / d
-        gradient = slope + rise * share
-        if gradient > 0.0:
-            high = w
-        else:
-            low = w
-        bend = 1e-12 + (1.0 + rise * rise) / root * share * share + rise * (1.0 - share * share) / d
-        step = gradient / bend
-        w = w - step if low < w - step < high else 0.5 * (low + high)
-        if abs(gradient) * min(abs(step), high - low) < _CORNER_MM:
-            break
-    return w
-
-
-@compiled
-def _stationary(row: Floats, q2: float, slope: float, low: float, high: float) -> float:
-    """Return where along the way, from the foot of the cell, a piece is lowest over it, between `low` and `high`."""
-    if row[ARC_R] <= 0.0:
-        return -slope * math.sqrt(q2 / (row[SLOPE] * row[SLOPE] - slope * slope))
-    if row[CENTRE_R] <= 0.0:
-        return -slope * math.sqrt(max(0.0, row[ARC_R] * row[ARC_R] - q2) / (1.0 + slope * slope))
-    return _on_corner(row, q2, slope, low, high)
-
-
-@compiled
-def _least(row: Floats, q2: float, slope: float, low: float, high: float) -> float:
-    """Return the least of `slope * w + outline` for `w` from `low` to `high`; far if there is none."""
-    if low > high:
-        return _FAR
-    if low + high >= 0.0:  # most often it is at the end that is nearer
-        z, rises = _at(row, q2, slope, low)
-        if rises >= 0.0:
-            return z
-        z, rises = _at(row, q2, slope, high)
-        if rises <= 0.0:
-            return z
-    else:
-        z, rises = _at(row, q2, slope, high)
-        if rises <= 0.0:
-            return z
-        z, rises = _at(row, q2, slope, low)
-        if rises >= 0.0:
-            return z
-    w = min(max(_stationary(row, q2, slope, low, high), low), high)
-    return _at(row, q2, slope, w)[0]
-
-
-@compiled
-def lowest(rows: Floats, q2: float, slope: float, before: float, after: float) -> float:
-    """Return how low a body gets over a cell, against its tip at the foot of the cell.
-
-    The way leads from `before` to `after` about that foot, which lies `sqrt(q2)` beside it.
-    """
-    if slope == 0.0:
-        w = min(max(0.0, before), after)
-        return level(rows, math.sqrt(q2 + w * w))
-    found = _FAR
-    nearest = min(max(0.0, before), after)
-    nearest2, farthest2 = q2 + nearest * nearest, q2 + max(before * before, after * after)
-    for i in range(rows.shape[0]):
-        outer2, inner2 = rows[i, TO_R] * rows[i, TO_R], rows[i, FROM_R] * rows[i, FROM_R]
-        if outer2 < nearest2 or inner2 > farthest2:
-            continue
-        outer = math.sqrt(outer2 - q2) if outer2 < farthest2 else _FAR
-        if inner2 <= nearest2:
-            found = min(found, _least(rows[i], q2, slope, max(before, -outer), min(after, outer)))
-        else:
-            inner = math.sqrt(max(0.0, inner2 - q2))
-            found = min(found, _least(rows[i], q2, slope, max(before, -outer), min(after, -inner)))
-            found = min(found, _least(rows[i], q2, slope, max(before, inner), min(after, outer)))
-    return found
-
-
-@compiled
 def _bounds(rows: Floats, bounds: Floats) -> None:
     """Write heights that the outline does not get below, by the square of the distance in equal steps."""
     outer = rows[rows.shape[0] - 1, TO_R]
@@ -194,7 +74,7 @@ def _any_above(heights: Floats, z: float) -> bool:
 @compiled
 def span(begin: Floats, end: Floats, ux: float, uy: float, radius: float, y: float) -> tuple[float, float]:
     """Return from where to where along x a body of this radius covers the line `y` on its way."""
-    low, high = _FAR, -_FAR
+    low, high = FAR, -FAR
     for place in (begin, end):
         left = radius * radius - (y - place[1]) ** 2
         if left >= 0.0:
@@ -217,8 +97,23 @@ def _columns(grid: Grid, low: float, high: float) -> tuple[int, int]:
 
 
 @compiled
+def _height(shape: int, rows: Floats, slope: float, length: float, along: float, beside: float) -> float:
+    """Return how low a body gets over a cell, against its tip at the foot of the cell."""
+    if length > 0.0:
+        return lowest_of(shape, rows, beside * beside, slope, -along, length - along)
+    return level(rows, math.sqrt(along * along + beside * beside))
+
+
+@compiled
 def _sweep_chord(
-    grid: Grid, begin: Floats, end: Floats, rows: Floats, bounds: Floats, cuts: bool, figures: Floats
+    grid: Grid,
+    begin: Floats,
+    end: Floats,
+    rows: Floats,
+    shape: int,
+    bounds: Floats,
+    cuts: bool,
+    figures: Floats,
 ) -> None:
     length, ux, uy, slope = chord(begin, end)
     radius = rows[rows.shape[0] - 1, TO_R]
@@ -228,7 +123,7 @@ def _sweep_chord(
     first_y = max(0, math.ceil((low_y - radius - grid.y0) / grid.cell_mm))
     last_y = min(grid.z.shape[0] - 1, math.floor((high_y + radius - grid.y0) / grid.cell_mm))
     first_x, end_x = _columns(grid, min(begin[0], end[0]) - radius, max(begin[0], end[0]) + radius)
-    volume, depth, left, right = 0.0, 0.0, _FAR, -_FAR
+    volume, depth, left, right = 0.0, 0.0, FAR, -FAR
     for iy in range(first_y, last_y + 1):
         y = grid.y0 + iy * grid.cell_mm
         row = grid.z[iy]
@@ -252,11 +147,8 @@ def _sweep_chord(
             past = along - min(max(along, 0.0), length)
             if here <= lowest_tip + _bound(bounds, per_bound, past * past + beside * beside):
                 continue
-            if length > 0.0:
-                z = begin[2] + slope * along + lowest(rows, beside * beside, slope, -along, length - along)
-            else:
-                z = lowest_tip + level(rows, math.sqrt(dx * dx + dy * dy))
-            z = max(z, grid.bottom)
+            from_z = begin[2] + slope * along if length > 0.0 else lowest_tip
+            z = max(from_z + _height(shape, rows, slope, length, along, beside), grid.bottom)
             if z >= here:
                 continue
             missed = here - z
@@ -291,19 +183,29 @@ def _steps(grid: Grid, places: Floats, cutter: Floats, holder: Floats, *_: objec
 
 
 @entry(steps=_steps)
+def _sweep_ways(
+    grid: Grid, places: Floats, cutter: Floats, holder: Floats, cut: Floats, touched: Floats, bounds: Floats
+) -> None:
+    """Do what `sweep` says; `bounds` [2, any] is room for it: compiled code that makes arrays takes long to load."""
+    cutter_shape, holder_shape = 0, 0
+    if cutter.shape[0]:
+        _bounds(cutter, bounds[0])
+        cutter_shape = shape_of(cutter)
+    if holder.shape[0]:
+        _bounds(holder, bounds[1])
+        holder_shape = shape_of(holder)
+    for n in range(places.shape[0] - 1):
+        begin, end = places[n], places[n + 1]
+        if cutter.shape[0]:
+            _sweep_chord(grid, begin, end, cutter, cutter_shape, bounds[0], True, cut[n])
+        if holder.shape[0]:
+            _sweep_chord(grid, begin, end, holder, holder_shape, bounds[1], False, touched[n])
+
+
 def sweep(grid: Grid, places: Floats, cutter: Floats, holder: Floats, cut: Floats, touched: Floats) -> None:
     """Move a tool from each of `places` [n + 1, 3] (its tip) to the next: lower the field to what is left.
 
     `cutter` and `holder` are outlines, of which either may be empty; the holder follows the cutter and lowers nothing.
     `cut` and `touched` [n, 6] get a row of figures for each way.
     """
-    bounds, holder_bounds = np.empty(_BOUNDS), np.empty(_BOUNDS)
-    if cutter.shape[0]:
-        _bounds(cutter, bounds)
-    if holder.shape[0]:
-        _bounds(holder, holder_bounds)
-    for n in range(places.shape[0] - 1):
-        if cutter.shape[0]:
-            _sweep_chord(grid, places[n], places[n + 1], cutter, bounds, True, cut[n])
-        if holder.shape[0]:
-            _sweep_chord(grid, places[n], places[n + 1], holder, holder_bounds, False, touched[n])
+    _sweep_ways(grid, places, cutter, holder, cut, touched, np.empty((2, _BOUNDS)))

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from itertools import pairwise
 
 import numpy as np
@@ -18,6 +18,7 @@ from polycnc.stock._sweep import AT_X, AT_Y, DEPTH_MM, FIGURES, VOLUME_MM3
 from polycnc.stock._tally import NEAR_CELLS, Tally
 from polycnc.stock._tool import Tool
 from polycnc.stock._turned import Turned
+from polycnc.stock._turned_solid import TurnedTarget
 from polycnc.stock._ways import Ways, WaysOfRows, runs
 
 Floats = npt.NDArray[np.float64]
@@ -31,11 +32,19 @@ class TurningCutting:
     """Let turning tools cut a body (see `tally`): X of the record is the distance from the axis, Y is 0.
 
     What rotates besides is a tool for the middle: a drill. A threading tool leaves one groove for each turn of the
-    spindle. A tool that is not among `tools` cuts nothing.
+    spindle. A tool that is not among `tools` cuts nothing. No tool may touch `fixtures`, which turn with the part; what
+    cuts into `target` is a contact too, but for threads.
     """
 
-    def __init__(self, stock: Turned, tools: Mapping[int, Tool | Insert]) -> None:
+    def __init__(
+        self,
+        stock: Turned,
+        tools: Mapping[int, Tool | Insert],
+        fixtures: Sequence[Turned] = (),
+        target: TurnedTarget | None = None,
+    ) -> None:
         self.stock = stock
+        self._fixtures, self._target = fixtures, target
         self.tally = Tally()
         self._tools = tools
         self._first_turns: dict[int, float] = {}  # which way the spindle turned in the first cut of an insert
@@ -60,6 +69,7 @@ class TurningCutting:
         if insert.inside:
             places[:, 0] *= -1.0
         figures = np.zeros((len(ways.ends), FIGURES))
+        self._note_around(ways, insert, outline, places)
         threads, out_of_thread = insert.kind is InsertKind.THREADING, self._leaves_thread(ways, places)
         if ways.rapid and not out_of_thread:
             met = figures.copy()
@@ -80,6 +90,20 @@ class TurningCutting:
             self.tally.count_idle(
                 ways, figures, lambda first, last: self._is_near(insert, outline, places[first : last + 1])
             )
+
+    def _note_around(self, ways: Ways, insert: Insert, outline: Floats, places: Floats) -> None:
+        """Note where an insert, or what holds it, meets fixtures, and where the insert cuts into the target."""
+        least = LEAST_DEPTH_SHARE * self.stock.cell_mm
+        for fixture in self._fixtures:
+            met = np.zeros((len(ways.ends), FIGURES))
+            self._sweep(insert, outline, places[:-1], places[1:], met, body=fixture)
+            self._note(ContactKind.FIXTURE, ways, met, least)
+            self._note(ContactKind.FIXTURE_HOLDER, ways, self._held(insert, places, fixture), least)
+        if self._target is not None and insert.kind is not InsertKind.THREADING:
+            met = np.zeros((len(ways.ends), FIGURES))
+            self._sweep(insert, outline, places[:-1], places[1:], met, body=self._target.limit)
+            met[:, DEPTH_MM] += np.where(met[:, DEPTH_MM] > 0.0, self._target.tolerance_mm, 0.0)
+            self._note(ContactKind.GOUGE, ways, met, 0.0)
 
     def _leaves_thread(self, ways: Ways, places: Floats) -> bool:
         """Tell whether a tool is only lifted out of the groove that it has cut up to where it is."""
@@ -105,14 +129,14 @@ class TurningCutting:
             self._sweep(insert, outline, places[:-1] + shift, places[1:] + shift, found)
         return bool(found[:, DEPTH_MM].any())
 
-    def _held(self, insert: Insert, places: Floats) -> Floats:
+    def _held(self, insert: Insert, places: Floats, body: Turned | None = None) -> Floats:
         """Return how deep what holds a tool gets: it is taken to be as wide as the tool, and a cell on both sides."""
         found = np.zeros((len(places) - 1, FIGURES))
         if not math.isinf(insert.reach_mm):
             wide = 0.5 * insert.flat_mm + insert.nose_mm + self.stock.cell_mm
             outline = np.array([wide, 0.0, 0.5 * math.pi, 0.0, 0.5 * math.pi, 0.0])
             above = places + (insert.reach_mm - insert.nose_mm, 0.0)
-            self._sweep(insert, outline, above[:-1], above[1:], found)
+            self._sweep(insert, outline, above[:-1], above[1:], found, body=body)
         return found
 
     def _sweep(
@@ -125,8 +149,9 @@ class TurningCutting:
         *,
         narrower_mm: float = 0.0,
         cuts: bool = False,
+        body: Turned | None = None,
     ) -> None:
-        stock = self.stock
+        stock = body or self.stock
         begins, ends = np.ascontiguousarray(begins), np.ascontiguousarray(ends)
         field, limit = (-stock.inner, -stock.outer) if insert.inside else (stock.outer, stock.inner)
         sweep_insert(
@@ -178,6 +203,7 @@ class TurningCutting:
                 holes[way] = figures[way]
                 holes[way, DEPTH_MM] = float(above[wall].max(initial=0.0))
         least = LEAST_DEPTH_SHARE * stock.cell_mm
+        self._note_bores(ways, tool, radii, heights)
         if ways.rapid:
             self._note(ContactKind.RAPID, ways, figures, least)
         self.tally.count(ways, figures, tool)
@@ -190,6 +216,23 @@ class TurningCutting:
             self.tally.count_idle(
                 ways, figures, lambda first, last: self._bores_near(ways.places[first : last + 1], tool)
             )
+
+    def _note_bores(self, ways: Ways, tool: Tool, radii: Floats, heights: Floats) -> None:
+        """Note where a drill meets fixtures, and where its hole is wider or deeper than that of the target."""
+        bodies = [(ContactKind.FIXTURE, each, 0.0) for each in self._fixtures]
+        if self._target is not None:
+            bodies.append((ContactKind.GOUGE, self._target.limit, self._target.tolerance_mm))
+        for kind, body, tolerance_mm in bodies:
+            met = np.zeros((len(ways.ends), FIGURES))
+            for way, (begin, end) in enumerate(self._on_axis(ways.places)):
+                above = body.z - min(begin[2], end[2])
+                reach = np.where(above < 0.0, 0.0, np.interp(above, heights, radii, right=tool.radius_mm))
+                deep = np.where((body.outer > body.inner) & (reach > 0.0), reach - body.inner, 0.0)
+                at = int(np.argmax(deep))
+                if deep[at] > 0.0:
+                    met[way, DEPTH_MM] = deep[at] + tolerance_mm
+                    met[way, AT_X], met[way, AT_Y] = reach[at], body.z[at]
+            self._note(kind, ways, met, LEAST_DEPTH_SHARE * self.stock.cell_mm)
 
     def _bores_near(self, places: Floats, tool: Tool) -> bool:
         """Tell whether a drill would cut if it went a little farther."""

@@ -11,8 +11,9 @@ import numpy as np
 import numpy.typing as npt
 
 from polycnc.kernel import compiled, entry
+from polycnc.stock._lowest import level
 from polycnc.stock._profile import ARC_R, BEGIN_Z, CENTRE_R, CENTRE_Z, FROM_R, SLOPE, TO_R
-from polycnc.stock._sweep import AT_X, AT_Y, DEPTH_MM, VOLUME_MM3, level
+from polycnc.stock._sweep import AT_X, AT_Y, DEPTH_MM, VOLUME_MM3
 
 Floats = npt.NDArray[np.float64]
 Cells = npt.NDArray[np.uint8]

@@ -180,10 +180,23 @@ def test_a_body_inside_out_is_refused(tmp_path: Path) -> None:
 def test_a_cell_is_not_wider_than_its_body() -> None:
     """What is left and removed was that of the cell."""
     stock = Stock(Box((0.0, 0.0, -10.0), (20.0, 30.0, 0.0)), 5_000.0)
-    assert stock.cell_mm == 20.0
+    assert (stock.cell_mm, stock.volume_mm3) == (10.0, pytest.approx(20.0 * 30.0 * 10.0))
     assert Stock(Box((0.0, 0.0, -10.0), (20.0, 40.0, 0.0)), 70.0).volume_mm3 == pytest.approx(
         20.0 * 40.0 * 10.0
     )
+
+
+@pytest.mark.parametrize(("wide", "deep"), [(100.1, 50.05), (30.0, 20.5), (7.3, 9.1)])
+def test_cells_fit_their_body(wide: float, deep: float) -> None:
+    """Those at the rim reached beyond it by up to half a cell."""
+    stock = Stock(Box((2.0, 3.0, -4.0), (2.0 + wide, 3.0 + deep, 0.0)), 0.2)
+    assert 0.18 < stock.cell_mm <= 0.2
+    assert stock.volume_mm3 == pytest.approx(wide * deep * 4.0, rel=3e-3)
+
+
+def test_a_long_strip_has_as_many_cells_as_a_square() -> None:
+    assert Form("box=0,0,-2,800,5,0").body(circle(), TOOLS).cell_mm == 0.1
+    assert Form("box=0,0,-2,64,62,0").body(circle(), TOOLS).cell_mm == 0.1
 
 
 def test_a_file_with_a_zero_byte_in_its_name_is_refused() -> None:

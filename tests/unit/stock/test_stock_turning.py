@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from itertools import pairwise
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -22,6 +23,7 @@ from polycnc.stock import (
     Tool,
     ToolKind,
     Turned,
+    TurnedTarget,
     TurningCutting,
     grooving_tool,
     iso_insert,
@@ -309,7 +311,9 @@ def test_what_no_lathe_has_is_refused(wrong: Any, text: str) -> None:
     ("arguments", "wrong"),
     [
         ({"stock": "box=0,0,-20,60,42,0"}, "on a lathe"),
-        ({"stock": "cylinder=30,-60,0", "fixtures": ["box=0,0,0,1,1,1"]}, "fixtures and targets on a lathe"),
+        ({"stock": "cylinder=30,-60,0", "fixtures": ["cylinder=0,0,1"]}, "no volume"),
+        ({"stock": "cylinder=30,-60,0", "fixtures": ["cylinder=30,0"]}, "'cylinder=30,0' is no body"),
+        ({"stock": "cylinder=30,-60,0", "target": "missing.stl"}, "cannot read"),
         ({"stock": "cylinder=-30,-60,0"}, "no volume"),
     ],
 )
@@ -317,6 +321,67 @@ def test_what_is_not_for_lathes_is_refused(arguments: dict[str, Any], wrong: str
     with pytest.raises(UsageError, match=wrong) as refused:
         runner.run(PLAIN, "lathe2", "din", check=False, **arguments)
     assert refused.value.hint
+
+
+FIXTURE_AT_GROOVE = [(ContactKind.FIXTURE, line) for line in (16, 17, 18, 19)]
+CHUCK = "cylinder=80,-70,-41"
+AROUND: dict[str, tuple[str, str, str, list[tuple[ContactKind, int]], float]] = {
+    "nothing": ("M30", "M30", CHUCK, [], 0.0),
+    "a cone too thin by 0.15 mm": ("X20 Z-30", "X19.7 Z-30", CHUCK, [(ContactKind.GOUGE, 13)], 0.0),
+    "a groove too deep by 0.1 mm": (
+        "G1 X20 F0.1",
+        "G1 X19.8 F0.1",
+        CHUCK,
+        [(ContactKind.GOUGE, 17), (ContactKind.GOUGE, 18)],
+        0.0,
+    ),
+    "a groove not deep enough by 0.1 mm": ("G1 X20 F0.1", "G1 X20.2 F0.1", CHUCK, [], 0.1),
+    "a blade beside the chuck": ("M30", "M30", "cylinder=80,-70,-38.5", FIXTURE_AT_GROOVE, 0.0),
+    "a blade beside a jaw": ("M30", "M30", "box=20,-5,-70,40,5,-38.5", FIXTURE_AT_GROOVE, 0.0),
+}
+
+
+@pytest.fixture(scope="module")
+def shaft(tmp_path_factory: pytest.TempPathFactory) -> str:
+    file = tmp_path_factory.mktemp("shaft") / "shaft.stl"
+    done = runner.run(SHAFT, "lathe2", "fanuc-lathe", stock="cylinder=30,-60,0", check=False)
+    assert done.stock is not None
+    done.stock.mesh().write_stl(file)
+    return str(file)
+
+
+@pytest.mark.parametrize("fault", AROUND)
+def test_targets_and_fixtures_on_a_lathe(fault: str, shaft: str) -> None:
+    right, wrong, fixture, said, rest_mm = AROUND[fault]
+    options: dict[str, Any] = {"stock": "cylinder=30,-60,0", "target": shaft, "fixtures": [fixture]}
+    found = runner.run(SHAFT.replace(right, wrong), "lathe2", "fanuc-lathe", check=False, **options).machined
+    assert found is not None
+    assert found.comparison is not None
+    assert [(each.kind, each.line) for each in found.collisions] == said
+    assert found.comparison.rest_mm == pytest.approx(rest_mm, abs=0.01)
+    assert (found.comparison.gouge_mm3 > 0.0) == any(kind is ContactKind.GOUGE for kind, _ in said)
+
+
+def test_a_drill_too_long_for_the_bore_of_its_target(tmp_path: Path) -> None:
+    part = Turned(30.0, -40.0, 0.0, 0.02)
+    part.inner[part.z > -25.0] = 4.0
+    part.mesh().write_stl(tmp_path / "part.stl")
+    for deep, gouges in ((-24.9, []), (-25.5, [11])):
+        bar = Turned(30.0, -50.0, 0.0, 0.02)
+        drilled = TurningCutting(
+            bar, {4: Tool(ToolKind.FLAT, 8.0)}, (), TurnedTarget(tmp_path / "part.stl", bar, 0.02)
+        )
+        drilled.add(
+            Rows(
+                np.array([1.0, 2.0]),
+                np.array([(0.0, 0.0, 2.0), (0.0, 0.0, deep)]),
+                np.array([10, 11]),
+                np.full(2, 4),
+                np.zeros(2, np.bool_),
+                np.full(2, 800.0),
+            )
+        )
+        assert [each.block for each in drilled.tally.contacts.all()] == gouges
 
 
 def test_an_insert_of_the_machine_file_that_cannot_be_is_refused() -> None:
