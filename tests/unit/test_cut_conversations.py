@@ -70,7 +70,9 @@ CONVERSATIONS: dict[str, tuple[str, list[bytes]]] = {
     "focas": ("fanuc", FOCAS), "http": ("plain", HTTP), "mtconnect": ("plain", MTCONNECT), "grbl": ("plain", GRBL),
     "shdr": ("plain", SHDR), "calls": ("fanuc", CALLS),
 }  # fmt: skip
-_CHANGES = re.compile(rb'(?:date|polycnc-number): [^\r]*|creationTime="[^"]*"|instanceId="[^"]*"|requestTime="[^"]*"')
+_CHANGES = re.compile(
+    rb'(?:date|polycnc-number): [^\r]*|creationTime="[^"]*"|instanceId="[^"]*"|requestTime="[^"]*"'
+)
 
 
 async def talk(name: str, pieces: Iterable[bytes]) -> bytes:

@@ -153,6 +153,7 @@ async function choose(machine, channel = 0) {
   main.inert = true; // what is still shown is of the machine before
   showStop(false); // whoever presses it now presses that of this machine
   link.leave();
+  clearTimeout(drawPath.timer);
   drawings++;
   Object.assign(link, { status: null, name: machine.name, channel, parts: machine.parts, kind: machine.kind });
   document.body.classList.toggle("board", !link.has("control"));
