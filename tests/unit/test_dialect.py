@@ -309,6 +309,7 @@ def test_the_dialect_of_a_program() -> None:
         ("O2\nT0101 M6\nG0 X20. Y5.\n", "fanuc", "O2 in line 1"),
         ("O2\nT101\nG0 X20. Z5.\n", "fanuc-lathe", "O2 in line 1"),
         ("N10 T2\nG71 P70 Q110 U0.4\n", "fanuc-lathe", "G71 P70 Q110 in line 2"),
+        ("O2 ; shaft\nT1 ; rough\nG71 P10 Q20 U1. ; cut\n", "fanuc-lathe", "G71 P10 Q20 in line 3"),
         ("N10 G28 U0 W0\nT0202\n", "fanuc-lathe", "G28 U0 in line 1"),
         ("G28 X0 Y0 U0 V0\nG73 X1 Z-1 Q1 R1\n", "din", ""),
         ("O2 ; shaft\nT0101 ; rough\nG0 X20. Z5. ; start\n", "fanuc-lathe", "O2 in line 1"),

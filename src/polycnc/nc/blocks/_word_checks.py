@@ -145,7 +145,8 @@ def refuse_rest(block: BlockContext, g: GWord) -> None:
 def _no_axis(block: BlockContext, name: str, word: Word) -> ProgramError:
     names = ", ".join(block.after.axis_names)
     hint = f"Its axes are {names}; remove the word, or choose another machine."
-    if _WAYS.get(name) in block.after.axis_names and not block.dialect.incremental:
+    axes = block.dialect.incremental or block.dialect.language == "rs274"  # its lathes have U and W as axes
+    if _WAYS.get(name) in block.after.axis_names and not axes:
         hint = (
             f"The dialect has ways by G91: write G91 and {_WAYS[name]}, then G90."
             if block.dialect.diameter_axes

@@ -87,6 +87,7 @@ _SIGNS = (
     _sign("fanuc", _LINE + rb"O[ \t]*[0-9]{1,8}(?=[ \t]*(?:[\r\n(;]|\Z))"),
 )
 _CODES, _, _NUMBERED = _SIGNS[-3:]
+_CYCLES = [sign for sign in _SIGNS if sign.name == "fanuc-lathe"]
 _BRACKETS = re.compile(rb"\([^)\r\n]*\)")
 _REMARK = re.compile(rb";[ \t]*(?:[A-Za-z]{3}|[A-Za-z]{1,2}[ \t]+[A-Za-z]{2})")
 """A remark after a semicolon, which ends a block on controls whose programs have nothing but a number."""
@@ -132,7 +133,7 @@ def choose_dialect(text: ProgramText, explicit: str | Path | Dialect | None = No
             return ChosenDialect(default, problem=_unreadable(text, sign, found))
     for sign in _SIGNS:
         if found := sign.pattern.search(words):
-            remarks = sign in (_CODES, _NUMBERED) and _has_remarks(with_comments)
+            remarks = sign in (_CODES, _NUMBERED, *_CYCLES) and _has_remarks(with_comments)
             turret = _TURRET.search(words) and not _MILL.search(words)
             lathe = _TURNING.get(sign.name) if turret else None
             if remarks and lathe is None and sign is _NUMBERED:
