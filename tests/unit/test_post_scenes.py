@@ -55,7 +55,10 @@ SCENES = {
 
 def shown_in(name: str) -> dict[str, int]:
     """Return the rows of the statements that a scene uses; one of refusals shows no more than it says."""
-    return {} if name == "refusals" else dict.fromkeys(rows_of(*lines_of(name)), 0)
+    rows = rows_of(*lines_of(name))
+    if "post.code.search_key" in rows:  # texts, orders and groups are those of the control file
+        rows += ["post.sec.nc_code", "post.sec.g_code", "post.sec.m_code"]
+    return {} if name == "refusals" else dict.fromkeys(rows, 0)
 
 
 @pytest.mark.parametrize(
