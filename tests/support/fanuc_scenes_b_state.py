@@ -235,9 +235,10 @@ def real_alarms(b: Bench) -> None:
             b.act("reset")
     b.title("programs: words, macros, messages; parameters; names")
     b.fresh(axes=3)
-    for number, text in enumerate(
-        ("G1 X1.", "G999", "#3000=5(CLAMP OPEN)", "#1=1/0", "M98 P7777", "G1 X[", "#3006=7(LOOK)\nG4 X0.01", "GOTO 99"), 101
-    ):  # fmt: skip
+    texts = "G1 X1.|G999|#3000=5(CLAMP OPEN)|#1=1/0|M98 P7777|G1 X[|#3006=7(LOOK)\nG4 X0.01|GOTO 99".split(
+        "|"
+    )
+    for number, text in enumerate(texts, 101):
         b.program(number, f"{text}\nM30")
         b.run(60)
         b.act("reset")
