@@ -121,8 +121,8 @@ def panel_at_work(b: Bench) -> None:
     b.do("cnc_wropnlsgnl", panel(8, rpd_ovrd=3))
     b.act("cycle_start")
     b.run(200)
-    for number, values in ((1421, (1080, 300, 240)), (1420, (6000, 6000, 4800)), (1421, (9000, 300, 240))):
-        b.parameters(number, *values)
+    for number, axes in ((1421, (1080, 300, 240)), (1420, (6000, 6000, 4800)), (1421, (9000, 300, 240))):
+        b.parameters(number, *axes)
         b.run(200)
     b.do("cnc_wropnlsgnl", panel(8, rpd_ovrd=0))
     b.control.reset()
