@@ -199,6 +199,8 @@ class Bench:
         read = self._read
         read("cnc_stopophis")
         counts = read("cnc_rdophisno"), read("cnc_rdalmhisno")
+        if any(new < old for old, new in zip(self.records, counts, strict=True)):
+            self.lines.append(f"    {counts[0]} operations, {counts[1]} past alarms")
         before = tuple(min(old, new) for old, new in zip(self.records, counts, strict=True))
         if counts[0] > before[0]:
             his = read("cnc_rdophistry", before[0] + 1, counts[0], 6 + 8 * (counts[0] - before[0]))

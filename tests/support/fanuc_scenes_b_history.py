@@ -86,8 +86,8 @@ def history_table(b: Bench) -> None:
     watch(b, (1, X, 1, 1), (2, X, 2, 2), (3, X, 128, 3))
     watch(b, (1, X, 1, 1), (21, X, 2, 2))
     watch(b, (4, X, 1, 1), (4, G, 2, 2))
-    for name in ("reset", "power_cycle"):
-        b.act(name)
+    for act in ("reset", "power_cycle"):
+        b.act(act)
         shown(b)
     b.again()
     shown(b)
@@ -150,11 +150,11 @@ def history_signals(b: Bench) -> None:
     b.histories()
     b.title("switches of the control that are signals")
     watch(b, (7, G, 10, 0xFF), (8, G, 11, 0x80), (9, G, 4, 0xFF))
-    for name, arguments in (
+    for act, arguments in (
         ("select_mode", ("JOG",)), ("select_mode", ("REF",)), ("emergency_stop", (True,)), ("emergency_stop", (False,)),
         ("protect_key", (True,)), ("signals.set_jog_override", (33.25,)),
     ):  # fmt: skip
-        b.act(name, *arguments)
+        b.act(act, *arguments)
         b.control.advance(1)
         b.histories()
     b.control.control.set_overrides(feed=0.44, rapid=0.5)

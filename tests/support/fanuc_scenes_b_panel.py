@@ -72,6 +72,8 @@ def panel_general(b: Bench) -> None:
             b.do("cnc_wropnlgnrl", fwlib.IODBGNRL(datano=9, type=short(chosen), sgnal=0xFF))
             b.ask("cnc_rdopnlgnrl", short(chosen))
             b.do("cnc_wropnlgnrl", fwlib.IODBGNRL(type=short(chosen), sgnal=1 << bit & 0xFF))
+            b.do("cnc_wropnlgnrl", fwlib.IODBGNRL(type=0xFF, sgnal=0xA5))
+            b.do("cnc_wropnlgnrl", fwlib.IODBGNRL(type=short(chosen), sgnal=0x5A))
             b.do("cnc_wropnlgnrl", fwlib.IODBGNRL(type=0xFF, sgnal=0x5A))
     b.title("names: each alone, all but one")
     texts = [f"{'ABCDEFGH'[k]}{'=' * k}".encode() for k in range(8)]
@@ -115,6 +117,18 @@ def panel_at_work(b: Bench) -> None:
             b.run(2000)
             b.control.reset()
             b.run(300)
+    b.title("F0 follows both of its parameters")
+    b.do("cnc_wropnlsgnl", panel(8, rpd_ovrd=3))
+    b.act("cycle_start")
+    b.run(200)
+    for number, axes in ((1421, (1080, 300, 240)), (1420, (6000, 6000, 4800)), (1421, (9000, 300, 240))):
+        b.parameters(number, *axes)
+        b.run(200)
+    b.do("cnc_wropnlsgnl", panel(8, rpd_ovrd=0))
+    b.control.reset()
+    b.run(600)
+    b.parameters(1420, 9000, 6000, 4800)
+    b.parameters(1421, 540, 300, 240)
     for bit, name in (
         (7, "blck_del"),
         (8, "sngl_blck"),

@@ -48,11 +48,12 @@ def configurations(b: Bench) -> None:
 
 def figures(b: Bench) -> None:
     """Digits and decimals in each increment system, in mm, inch and degree, of a program and of the machine."""
-    for machine in (
+    machines: tuple[dict[str, Any], ...] = (
         *({"increment": each, "inch_input": to, "inch_output": of, "axes": 3, "rotary": (2,)}
           for each in ("IS-A", "IS-B", "IS-C") for to in (False, True) for of in (False, True)),
         {"model": "D"}, {"model": "D", "increment": "IS-C", "axes": 1}, {"axes": 6, "rotary": (6, 1)},
-    ):  # fmt: skip
+    )  # fmt: skip
+    for machine in machines:
         b.fresh(**machine)
         for kind in range(3):
             b.ask("cnc_getfigure", kind)
@@ -235,9 +236,10 @@ def real_alarms(b: Bench) -> None:
             b.act("reset")
     b.title("programs: words, macros, messages; parameters; names")
     b.fresh(axes=3)
-    for number, text in enumerate(
-        ("G1 X1.", "G999", "#3000=5(CLAMP OPEN)", "#1=1/0", "M98 P7777", "G1 X[", "#3006=7(LOOK)\nG4 X0.01", "GOTO 99"), 101
-    ):  # fmt: skip
+    texts = [
+        "G1 X1.", "G999", "#3000=5(CLAMP OPEN)", "#1=1/0", "M98 P7777", "G1 X[", "#3006=7(LOOK)\nG4 X0.01", "GOTO 99",
+    ]  # fmt: skip
+    for number, text in enumerate(texts, 101):
         b.program(number, f"{text}\nM30")
         b.run(60)
         b.act("reset")
@@ -374,6 +376,8 @@ def diagnosis(b: Bench) -> None:
         (0, 0),
         (0, 4),
         (3, 3),
+        (3, 20),
+        (21, 199),
         (5, 19),
         (20, 31),
         (200, 203),

@@ -63,7 +63,10 @@ SHOWS = {
         r"cnc_(stop|start|clear|rd)ophis.*|cnc_rdalmhis.*|ODBHIS(?!\.(alm_grp|sig)).*|ODBAHIS.*"
         r"|concept\.history.*"
     ),
-    "faults": r"cnc_(opdi|exebufstat|finstate|setfin|refpoint|abspoint|incpoint|dwell|coordre)\.err\.EW_BUSY|common\.handle2",
+    "faults": (
+        r"cnc_(opdi|exebufstat|finstate|setfin|refpoint|abspoint|incpoint|dwell|coordre)\.err\.EW_BUSY"
+        r"|common\.handle2"
+    ),
 }
 CONFORMANCE = load_conformance()
 STATED = [row.id for row in CONFORMANCE.rows("fanuc") if CONFORMANCE.state(row.id) is State.TESTED]

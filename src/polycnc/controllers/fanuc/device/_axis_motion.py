@@ -202,14 +202,14 @@ class AxisMotion:
                 for channel in control.channels:
                     channel.release()
                 path.ends = {axis: self._end(block, axis, value) for axis, value in block.values}
-                for axis, value in block.values:
-                    self._go(block, axis, path.ends[axis])
+                for axis, there in path.ends.items():
+                    self._go(block, axis, there)
             except ControlError as error:
                 for each in block.axes:
                     control.manual.stop(self._axis_name(each))
                 if error.reason.name == "TRAVEL":
                     self.drop()
-                    self._travel_alarm(block, axis, value)
+                    self._travel_alarm(block, axis, dict(block.values)[axis])
                 return False
         path.begun = True
         return True

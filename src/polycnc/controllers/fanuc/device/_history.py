@@ -46,7 +46,7 @@ class Monitored:
 
 
 class Histories:
-    """Sample and read both histories of a Power Mate; both are durable. `byte` returns the byte of an F or G address."""
+    """Sample and read both histories of a Power Mate; both are durable. `byte` returns that of an F or G address."""
 
     def __init__(
         self, store: Store, power: Power, byte: Callable[[str, int], int], state: SamplingState

@@ -18,7 +18,7 @@ from polycnc.controllers.fanuc.data._parameter_rows import ParameterRow
 from polycnc.controllers.fanuc.data._parameters import Parameters
 from polycnc.controllers.fanuc.data._tool_offsets import ToolOffsets
 from polycnc.controllers.fanuc.device._axis_motion import AxisMotion
-from polycnc.controllers.fanuc.device._device_state import DeviceState
+from polycnc.controllers.fanuc.device._device_state import DeviceState, SignalState
 from polycnc.controllers.fanuc.device._execution import Execution
 from polycnc.controllers.fanuc.device._history import Histories
 from polycnc.controllers.fanuc.device._machine_file import axes_of, default_names, defaults
@@ -106,15 +106,7 @@ class PowerMate:
         ports = parameters, self.tool_offsets, state.signals, state.macros, note
         variables = partial(PowerMateVariables, power, *ports)
         self.custom_macros = Macros(self.macros, power, parameters, variables, state.macros)
-        buttons = Buttons(
-            start=self.cycle_start,
-            hold=self.feed_hold,
-            go_on=lambda: self.axis_motion.go_on(),
-            reset=self.reset,
-            emergency_stop=self.emergency_stop,
-            select_mode=self.select_mode,
-            protect=state.turn_key,
-        )
+        buttons = _buttons_of(self)
         read = power, parameters, units, self.positions, self.custom_macros, state
         self.signals = Signals(*read, buttons, lambda address: self.panel.image(address), note)
         self.panel = Panel(store, self.signals, state, self.select_mode)
@@ -185,12 +177,7 @@ class PowerMate:
             ControlError: As `cnc.Control.cycle_start`; feed hold or reset is given; nothing sends a program in RMT.
         """
         self.power.take_over()
-        if self.state.signals.hold_is_on:
-            raise ControlError(
-                Refusal.HELD, "feed hold is given (*SP)", hint="Take feed hold away, at G8#5 or on the panel."
-            )
-        if self.state.signals.reset_is_on:
-            raise ControlError(Refusal.HELD, "external reset is given (ERS)", hint="Take it away, at G8#7.")
+        _check_signals(self.state.signals)
         self.axis_motion.go_on()
         channel = self.control.channels[0]
         self.remote.before_start(name_of(self.programs.selected) if self.programs.selected else None)
@@ -355,6 +342,28 @@ class PowerMate:
         languages = (self.custom_macros.language,) if self.has_option(MACRO_OPTION) else ()
         self.power.switch_on(before, languages, self.skip.noting())
         self.control.set_observer(self.history)
+
+
+def _buttons_of(it: PowerMate) -> Buttons:
+    return Buttons(
+        start=it.cycle_start,
+        hold=it.feed_hold,
+        go_on=lambda: it.axis_motion.go_on(),
+        reset=it.reset,
+        emergency_stop=it.emergency_stop,
+        select_mode=it.select_mode,
+        protect=it.state.turn_key,
+    )
+
+
+def _check_signals(signals: SignalState) -> None:
+    """Refuse a start while feed hold or external reset is given."""
+    if signals.hold_is_on:
+        raise ControlError(
+            Refusal.HELD, "feed hold is given (*SP)", hint="Take feed hold away, at G8#5 or on the panel."
+        )
+    if signals.reset_is_on:
+        raise ControlError(Refusal.HELD, "external reset is given (ERS)", hint="Take it away, at G8#7.")
 
 
 def _parameters_changed(it: PowerMate, rows: tuple[ParameterRow, ...]) -> None:
