@@ -168,13 +168,13 @@ def rules(b: Bench) -> None:
     b.device.select_program(8)
     for value in (64, 64 + 4, 4):
         b.code("cnc_wrparam", 5, psd(3201, 0, cdata=value))
-        for blocks in (
+        for parts in (
             ("O7", f"G{value}", "M30"),
             ("O8", "G2", "M30"),
             ("O9", "M30", "O7", "G3", "M30"),
             ("O9", "M30", "O9", "M30"),
         ):
-            _sent(b, f"3201 = {value}, ", stream(*blocks))
+            _sent(b, f"3201 = {value}, ", stream(*parts))
     b.say(f"{_upload(b, 7)}, {_upload(b, 8)}")
     b.title("programs that parameters protect: download, MDI call, delete, search, upload")
     edges = (7999, 8000, 8500, 8999, 9000, 9500, 9999)
