@@ -84,7 +84,13 @@ def offsets(b: Bench) -> None:
             )
     b.title("all of them at once, and the halves")
     b.control()
-    b.say(b.cell("cnc_wrtofsr", 402, tool_offsets(1, 99, -1, (7 * k - 350 for k in range(99)), "m_ofs_a")))
+    b.say(
+        b.cell(
+            "cnc_wrtofsr",
+            402,
+            tool_offsets(1, 99, -1, ((7 * k + 2) * (-1) ** k for k in range(99)), "m_ofs_a"),
+        )
+    )
     b.say(numbers(b.get("cnc_rdtofsr", 1, 0, 99, 402).u.m_ofs))
     b.say(" ".join(str(b.get("cnc_rdtofs", number, 0, 8).data) for number in range(1, 100)))
     b.say(numbers(b.get("cnc_rdtofsr", 50, -1, 99, 402).u.m_ofs_a))

@@ -389,7 +389,7 @@ def handles(b: Bench) -> None:
     for model, axes in (("H", 1), ("H", 6), ("D", 1), ("D", 2)):
         b.control(model=model, axes=axes)
         here = [fwlib.ODBPOS(idata=1, ldata=5)]
-        codes = (
+        answers = (
             f"{name} {b.cell(f'cnc_{name}', *given)}"
             for name, given in (
                 ("opdi", (1, fwlib.ODBOPDI(axis=1))),
@@ -401,7 +401,7 @@ def handles(b: Bench) -> None:
                 ("setfin", (fwlib.ODBFIN(),)),
             )
         )
-        b.say(f"{model}, {axes} axes: {', '.join(codes)}")
+        b.say(f"{model}, {axes} axes: {', '.join(answers)}")
     b.title("each function with a handle that is none")
     b.lines += _answers(b, 0x7777)
     for fault in EW:

@@ -100,6 +100,12 @@ def transfers(b: Bench) -> None:
             ]
             b.say(f"  {', '.join(_upload(b, number) for number in kept)}")
             b.code("cnc_delall")
+    allowed = "ABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789+-./*=,#[]&?@: "
+    comment = bytes(each for each in range(0x20, 0x7F) if each not in b"()%").decode()
+    data = stream("O7", f"N1{allowed}", f"({comment})", f"G1{allowed[::-1]}({comment[::-1]})X", "M30")
+    b.say(f"every character: {_download(b, data)}")
+    b.say(f"  {_upload(b, 7)}")
+    b.code("cnc_delall")
     for data in (
         b"",
         b"%",
@@ -162,13 +168,13 @@ def rules(b: Bench) -> None:
     b.device.select_program(8)
     for value in (64, 64 + 4, 4):
         b.code("cnc_wrparam", 5, psd(3201, 0, cdata=value))
-        for blocks in (
+        for parts in (
             ("O7", f"G{value}", "M30"),
             ("O8", "G2", "M30"),
             ("O9", "M30", "O7", "G3", "M30"),
             ("O9", "M30", "O9", "M30"),
         ):
-            _sent(b, f"3201 = {value}, ", stream(*blocks))
+            _sent(b, f"3201 = {value}, ", stream(*parts))
     b.say(f"{_upload(b, 7)}, {_upload(b, 8)}")
     b.title("programs that parameters protect: download, MDI call, delete, search, upload")
     edges = (7999, 8000, 8500, 8999, 9000, 9500, 9999)
@@ -521,7 +527,7 @@ CALLS: tuple[tuple[str, tuple[object, ...]], ...] = (
     ("seqsrch", (30,)), ("seqsrch", (31,)), ("rewind", ()), ("download", (b"\nO5\nM30\n%", 9)), ("dwnend", ()),
     ("dwnstart", ()),
     ("download", (b"\nO6\n", 4)), ("dwnend", ()), ("upload", (9,)), ("upstart", (8,)), ("upload", (0,)),
-    ("upload", (3,)), ("upend", ()),
+    ("upload", (3,)), ("upend", ()), ("upend", ()),
     ("search", (7,)), ("search", (8,)), ("search", (11,)), ("search", (0,)), ("delete", (11,)),
     ("delete", (0,)), ("delete", (7,)),
     ("delete", (9001,)), ("delete", (8,)), ("delall", ()),

@@ -72,6 +72,7 @@ class Power:
         self, before: Machine | None, languages: tuple[MacroLanguage, ...], on_skip: Callable[[], None]
     ) -> None:
         """Make the control that there is when power comes on, with the axes where those of `before` are."""
+        self._units.switched_on()
         axes, fitted = self._axes(), self._fitted
         names = [axis.name for axis in axes]
         start = (

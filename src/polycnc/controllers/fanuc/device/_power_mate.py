@@ -338,7 +338,6 @@ class PowerMate:
         self.panel.switched_on()
 
     def _switch_on(self, before: Machine | None) -> None:
-        self.units.switched_on()
         languages = (self.custom_macros.language,) if self.has_option(MACRO_OPTION) else ()
         self.power.switch_on(before, languages, self.skip.noting())
         self.control.set_observer(self.history)
