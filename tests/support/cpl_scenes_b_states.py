@@ -47,6 +47,8 @@ def states(b: Bench) -> None:
     b.look("goes on", 50)
     control.set_overrides(feed=0.3)
     b.look("feed override 30 %", 100)
+    control.set_overrides(feed=0.005)
+    b.look("feed override 0.5 %", 20)
     control.set_overrides(feed=0.0)
     b.look("feed override 0 %", 100)
     control.set_overrides(feed=1.5, spindle=1.2)
