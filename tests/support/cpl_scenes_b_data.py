@@ -116,6 +116,9 @@ def tables(b: Bench) -> None:
     b.say("zero shifts: every G address of V1, V2 and V3, and from outside, by index and name")
     for table in range(-1, 5):
         codes = GROUPS if table in (1, 3) else (54, 159, 259, 160, 260, 360)
+        for code in codes:  # what is set replaces what was there
+            b.set("FXC", 7.0, 1, code, table)
+            b.set("FXC", 7.0, 9, code, table)
         b.set_all("FXC", ((code + table / 8, (axis, code, table)) for code in codes for axis in (1, 9)))
         b.ask_all("FXC", ((axis, code, table) for code in codes for axis in (1, 9, 5)))
     b.say("zero shifts: axes")
@@ -160,6 +163,9 @@ def tables(b: Bench) -> None:
         b.ask_all("TC", ((sel, group, table) for group in groups for sel in range(-1, 10)))
     b.say("compensations: units")
     for unit in (-1, 0, 1, 2, 3):
+        for group in groups:
+            for sel in range(9):
+                b.set("TC", 9.0, sel, group, table)
         b.set_all(
             "TC",
             ((2.0, (sel, group, table, unit)) for sel, group, table in ((1, 7, 4), (-2, 7, 5), (1, 345, 0))),

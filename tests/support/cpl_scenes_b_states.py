@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from functools import partial
 
 from polycnc.cnc import Mode as ControlMode
 from polycnc.controllers.bosch.ncs import Mode
@@ -308,6 +309,6 @@ def references(b: Bench) -> None:
         pnc.reset()
         pnc.advance(100)
         pnc.select_mode(Mode.REFERENCE)
-        b.attempt("reference", lambda name=axis: pnc.control.reference(name))
+        b.attempt("reference", partial(pnc.control.reference, axis))
         b.look(f"{axis} searches its reference point", 1)
         b.look(f"{axis} is referenced", 8000)
