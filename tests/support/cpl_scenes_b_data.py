@@ -121,6 +121,18 @@ def tables(b: Bench) -> None:
             b.set("FXC", 7.0, 9, code, table)
         b.set_all("FXC", ((code + table / 8, (axis, code, table)) for code in codes for axis in (1, 9)))
         b.ask_all("FXC", ((axis, code, table) for code in codes for axis in (1, 9, 5)))
+    b.say("zero shifts in force, by group and from outside")
+    for code in (*range(54, 60), *range(154, 160), *range(254, 260), 160, 260, 360):
+        b.pnc.reset(channel=1)
+        b.pnc.advance(2)
+        b.run(f"N1 G{code}\nN2 G1 F6000\nN3 M0", 8)
+        b.note(
+            f"G{code}",
+            f"{b.data(15, 1)}, outside {b.data(52, 1)}, X is {b.call('FXC', 1)}, {b.call('NCF', f'G{code}')}",
+        )
+    b.pnc.reset(channel=1)
+    b.pnc.advance(2)
+    b.run("N1 G1 X0 F600\nN2 M0", 50)
     b.say("zero shifts: axes")
     b.set_all("FXC", ((2.5, (axis, code, table)) for code, table in ((54, 1), (160, 0)) for axis in ENDS))
     b.ask_all("FXC", ((axis, code, table) for code, table in ((54, 1), (160, 0)) for axis in ENDS))
