@@ -185,7 +185,9 @@ def show(bench: Bench, *calls: Place) -> None:
         answer = bench.call(str(name), *arguments)
         done.append(f"{name}({asked})" + ("" if answer == "0" else f" {answer}"))
     bench.lines += ["", f"== {' '.join(done)}"]
-    for each in picture(bench.pnc.screen()):
-        if each not in bench.seen:
-            bench.lines.append(each)
-    bench.seen = set(picture(bench.pnc.screen()))
+    now = picture(bench.pnc.screen())
+    kinds = {each.partition(":")[0] for each in now}
+    gone = {each.partition(":")[0] for each in bench.seen} - kinds
+    bench.lines += [f"no more: {', '.join(sorted(gone))}"] if gone else []
+    bench.lines += [each for each in now if each not in bench.seen]
+    bench.seen = set(now)

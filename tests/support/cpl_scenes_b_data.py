@@ -116,8 +116,23 @@ def tables(b: Bench) -> None:
     b.say("zero shifts: every G address of V1, V2 and V3, and from outside, by index and name")
     for table in range(-1, 5):
         codes = GROUPS if table in (1, 3) else (54, 159, 259, 160, 260, 360)
+        for code in codes:  # what is set replaces what was there
+            b.set("FXC", 7.0, 1, code, table)
+            b.set("FXC", 7.0, 9, code, table)
         b.set_all("FXC", ((code + table / 8, (axis, code, table)) for code in codes for axis in (1, 9)))
         b.ask_all("FXC", ((axis, code, table) for code in codes for axis in (1, 9, 5)))
+    b.say("zero shifts in force, by group and from outside")
+    for code in (*range(54, 60), *range(154, 160), *range(254, 260), 160, 260, 360):
+        b.pnc.reset(channel=1)
+        b.pnc.advance(2)
+        b.run(f"N1 G{code}\nN2 G1 F6000\nN3 M0", 8)
+        b.note(
+            f"G{code}",
+            f"{b.data(15, 1)}, outside {b.data(52, 1)}, X is {b.call('FXC', 1)}, {b.call('NCF', f'G{code}')}",
+        )
+    b.pnc.reset(channel=1)
+    b.pnc.advance(2)
+    b.run("N1 G1 X0 F600\nN2 M0", 50)
     b.say("zero shifts: axes")
     b.set_all("FXC", ((2.5, (axis, code, table)) for code, table in ((54, 1), (160, 0)) for axis in ENDS))
     b.ask_all("FXC", ((axis, code, table) for code, table in ((54, 1), (160, 0)) for axis in ENDS))
@@ -160,6 +175,9 @@ def tables(b: Bench) -> None:
         b.ask_all("TC", ((sel, group, table) for group in groups for sel in range(-1, 10)))
     b.say("compensations: units")
     for unit in (-1, 0, 1, 2, 3):
+        for group in groups:
+            for sel in range(9):
+                b.set("TC", 9.0, sel, group, table)
         b.set_all(
             "TC",
             ((2.0, (sel, group, table, unit)) for sel, group, table in ((1, 7, 4), (-2, 7, 5), (1, 345, 0))),

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from functools import partial
 
 from polycnc.cnc import Mode as ControlMode
 from polycnc.controllers.bosch.ncs import Mode
@@ -47,6 +48,8 @@ def states(b: Bench) -> None:
     b.look("goes on", 50)
     control.set_overrides(feed=0.3)
     b.look("feed override 30 %", 100)
+    control.set_overrides(feed=0.005)
+    b.look("feed override 0.5 %", 20)
     control.set_overrides(feed=0.0)
     b.look("feed override 0 %", 100)
     control.set_overrides(feed=1.5, spindle=1.2)
@@ -306,6 +309,6 @@ def references(b: Bench) -> None:
         pnc.reset()
         pnc.advance(100)
         pnc.select_mode(Mode.REFERENCE)
-        b.attempt("reference", lambda name=axis: pnc.control.reference(name))
+        b.attempt("reference", partial(pnc.control.reference, axis))
         b.look(f"{axis} searches its reference point", 1)
         b.look(f"{axis} is referenced", 8000)
