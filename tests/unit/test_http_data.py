@@ -203,7 +203,9 @@ def test_the_clock_freezes_steps_and_jumps_to_the_next_event(kind: str) -> None:
     visit(kind, PLAIN if kind == "plain" else FANUC, ask)
 
 
-def test_a_step_is_answered_when_it_has_passed_however_long_that_lasts(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_step_is_answered_when_it_has_passed_however_long_that_lasts(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
     """Time has a hundredth of a second in one go, and rests after it: requests find the machine in the middle."""
 
     async def ask(client: Any, machine: ServedMachine) -> None:
