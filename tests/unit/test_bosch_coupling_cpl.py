@@ -376,8 +376,15 @@ def test_fields_truth_values_and_nul_can_be_sent_20_variables_at_most() -> None:
     with pytest.raises(ProgramError, match="MMC"):
         cell.run(f"10 E%=MMC({','.join(f'V{number}' for number in range(21))})\n")
     many = ",".join(f"V{number}" for number in range(20))
-    cell.clients.client = lambda variables: len(variables) == 20
-    assert cell.run(f"10 #E%=MMC({many})\n")["#E%"] == 0
+
+    def counting(variables: Sequence[Sent]) -> bool:
+        for number, each in enumerate(variables):
+            each.value = number + 0.5
+        return len(variables) == 20
+
+    cell.clients.client = counting
+    ran = cell.run(f"10 #E%=MMC({many})\n20 #A=V0 : #B=V18 : #C=V19\n")
+    assert [ran[name] for name in ("#E%", "#A", "#B", "#C")] == [0, 0.5, 18.5, 19.5]
 
 
 @pytest.mark.covers("cpl.MMC")

@@ -508,7 +508,7 @@ def test_feeds_per_revolution_and_program_stops_are_seen(example: Example) -> No
 def test_a_locked_service_channel_leaves_the_old_value(example: Example) -> None:
     drives = example.pnc.system.drives
     example.run("N1 G0 X3.5")
-    assert example.run('1 #P%=SCS(1,"S",47,#E%)')["#P%"] == 35000
+    assert example.run('1 #P%=SCS(1,"S",47)')["#P%"] == 35000
     drives.locked = True
     example.run("N1 G0 X8")
     found = example.run('1 #P%=SCS(1,"S",47,#E%) : SCSL(1,"S",187,"L",#F%) : #Q%=SCS(1,"S",51,#G%)')

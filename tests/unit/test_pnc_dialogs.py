@@ -114,7 +114,7 @@ def test_the_block_in_the_editor_is_read_and_overwritten(panel: Panel) -> None:
         '30 DLG\n40 PRN(8,4,"MAX.CUTTING WIDTH: ###.### MM",W)\n50 INP(W)\n60 ENDDLG\n70 LJUST\n'
         '80 PRN#(0,"N10 Q900[",W,",",N%*2,"]")',
     )
-    panel.write("cpldlg05.dlg", '10 INP#(0,A)\n20 #A=A\n30 PRN#(0,"G1 X3")')
+    panel.write("cpldlg05.dlg", '10 INP#(0,A)\n20 #A=A\n30 PRN#(0,"  G1 X3 ")')
     panel.write("macoda.dat", '3080 00006 = "SP", "Q900"\n3080 00007 = "other.dlg", "width.dlg"')
     panel.restart(("3", "7", ".", "5", "ENTER"))
     block = panel.pnc.edit_block("N10 Q900[12.25, 4,TRUE ,-0.125]")
@@ -124,7 +124,7 @@ def test_the_block_in_the_editor_is_read_and_overwritten(panel: Panel) -> None:
     assert block.text == "N10 Q900[37.5,8]"
     plain = panel.pnc.edit_block("N10 X5 Y3")
     panel.wait()
-    assert (panel.pnc.variables()["#A"], plain.text, block.text) == (None, "G1 X3", "N10 Q900[37.5,8]")
+    assert (panel.pnc.variables()["#A"], plain.text, block.text) == (None, "  G1 X3 ", "N10 Q900[37.5,8]")
     with pytest.raises(ControlError, match=r"there is no program other\.dlg"):
         panel.pnc.edit_block('N10 P SP["a,b",3]')
     panel.write("other.dlg", "10 INP#(0,A,B)\n20 #A=A : #B=B")
