@@ -131,7 +131,7 @@ class Shown:
         self._axes = axes
         self._channels = channels
         self._tables = tables
-        self._tags: dict[int, int] = {}
+        self._tags: dict[int, tuple[int, bool]] = {}
         self._unmoved = (0.0,) * len(axes.names)
         self._now: Mapping[str, AxisStatus] | None = None
         self._blocks: dict[int, tuple[ModalWords, list[float]]] = {}
@@ -211,7 +211,7 @@ class Shown:
 
     def _words(self, run: ProgramRun, number: int) -> ModalWords:
         """Return the modal words of the executed block; after a reset those of the power-up condition."""
-        if run.state is not RunState.RESET or not run.at_rest:
+        if not _is_reset(run):
             return executed_words(run)
         kept = self._openings.get(number)
         if kept is None or kept[0] is not run or kept[1] is not run.channel:
@@ -243,8 +243,9 @@ class Shown:
             return
         row = run.machine.state.paths.row[run.path]
         words, _ = self._block(run, number)
-        if self._tags.get(number) != run.reading.tag:
-            self._tags[number] = run.reading.tag
+        executed = run.reading.tag, _is_reset(run)
+        if self._tags.get(number) != executed:
+            self._tags[number] = executed
             shown.blocks += 1
         self._state(shown, run, number, failed=failed)
         running = row["state"] == RUNNING
@@ -365,6 +366,11 @@ class Shown:
             motion=_motion(now, words is not None and bool(words.coolant)),
             cutting_m_min=(speed if now.direction else 0.0) if cutting else None,
         )  # fmt: skip
+
+
+def _is_reset(run: ProgramRun) -> bool:
+    """Whether the power-up condition holds again, after a reset."""
+    return run.state is RunState.RESET and run.at_rest
 
 
 def _motion(now: SpindleNow, wet: bool) -> SpindleMotion:
