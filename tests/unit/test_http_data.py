@@ -231,11 +231,11 @@ def test_what_is_told_later_has_a_larger_number() -> None:
         from polycnc.servers.http._lease import Lease
         from polycnc.servers.http._stream import Stream
 
-        stream = Stream(None, machine, 5.0, Lease())  # type: ignore[arg-type]
+        stream = Stream(None, machine, 5.0, Lease(), lambda: 7)  # type: ignore[arg-type]
         holder = {"operator": "Anna", "key": "annas-key-4711"}
         numbers = []
+        assert json.loads(stream._message())["number"] == 7
         for _ in range(2):
-            numbers.append(json.loads(stream._message())["number"])
             for place, asked in (("/commands", {"command": "reset"}), ("/lease", holder)):
                 answer = await client.post(place, json=asked, headers={"polycnc-key": "annas-key-4711"})
                 numbers.append(int(answer.headers["polycnc-number"]))

@@ -57,7 +57,7 @@ def test_a_viewer_that_freezes_stops_its_axis_and_late_repeats_do_not_start_it()
         control, viewer = machine.control, _Viewer()
         assert control is not None
         control.select_mode(Mode.JOG)
-        stream = Stream(viewer, machine, 5.0, Lease())  # type: ignore[arg-type]
+        stream = Stream(viewer, machine, 5.0, Lease(), lambda: 1)  # type: ignore[arg-type]
         running = asyncio.ensure_future(stream.run())
 
         def manual() -> str:

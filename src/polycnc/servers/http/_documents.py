@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import itertools
 from dataclasses import is_dataclass
 from functools import cache
 from typing import Any
@@ -12,14 +11,6 @@ from pydantic_core import to_json
 
 from polycnc.cnc import Inventory, Status
 from polycnc.servers.machines import ServedMachine
-
-NUMBER_HEADER = "polycnc-number"
-_NUMBERS = itertools.count(1)
-
-
-def next_number() -> int:
-    """Return the number of what is told now: of two the larger one was told later, whichever arrives first."""
-    return next(_NUMBERS)
 
 
 @cache

@@ -10,6 +10,7 @@ from polycnc.servers.http._problem import Problem
 from polycnc.servers.machines import Log, Programs, ServedMachine
 
 JSON = "application/json"
+NUMBER_HEADER = "polycnc-number"
 ONE = "/{machine}"
 REFUSALS: dict[int | str, dict[str, Any]] = {
     code: {
@@ -25,11 +26,17 @@ STATUS = {"anyOf": [{"$ref": f"#/components/schemas/{name}"} for name in ("Statu
 
 
 class Found:
-    """The machines of the process by name, and the log of what was asked."""
+    """The machines of the process by name, the log of what was asked, and numbers for what is told."""
 
     def __init__(self, machines: Mapping[str, ServedMachine], log: Log) -> None:
         self.machines = machines
         self.log = log
+        self._told = 0
+
+    def next_number(self) -> int:
+        """Return the number of what is told now: of two the larger one was told later, whichever arrives first."""
+        self._told += 1
+        return self._told
 
     def machine(self, name: str) -> ServedMachine:
         """Return a machine.

@@ -13,8 +13,7 @@ from starlette.requests import HTTPConnection
 
 from polycnc.errors import PolycncError
 from polycnc.servers.http._body import checked, json_object
-from polycnc.servers.http._documents import NUMBER_HEADER, next_number
-from polycnc.servers.http._found import ONE, Found, body
+from polycnc.servers.http._found import NUMBER_HEADER, ONE, Found, body
 from polycnc.servers.machines import ServedMachine
 
 USUAL_S, MOST_S = 10.0, 600.0
@@ -144,7 +143,7 @@ class LeaseRoutes:
         asked = checked(LeaseAsked, await json_object(request))
         before = self._leases.of(machine).shown().holder
         shown = self._leases.of(machine).take(asked)
-        response.headers[NUMBER_HEADER] = str(next_number())
+        response.headers[NUMBER_HEADER] = str(self._found.next_number())
         if before != shown.holder:
             self._found.log.write("lease", machine=machine, holder=shown.holder, before=before)
         return shown

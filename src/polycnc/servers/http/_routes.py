@@ -14,8 +14,8 @@ from polycnc.servers.http._body import json_object
 from polycnc.servers.http._check import CheckRoutes
 from polycnc.servers.http._clock import ClockRoutes
 from polycnc.servers.http._data import DataRoutes
-from polycnc.servers.http._documents import NUMBER_HEADER, as_json, next_number, status_json
-from polycnc.servers.http._found import JSON, ONE, REFUSALS, STATUS, Found, answer, body
+from polycnc.servers.http._documents import as_json, status_json
+from polycnc.servers.http._found import JSON, NUMBER_HEADER, ONE, REFUSALS, STATUS, Found, answer, body
 from polycnc.servers.http._lease import KeyShown, LeaseRoutes, Leases, is_for_all
 from polycnc.servers.http._path import PathRoutes
 from polycnc.servers.http._scenarios import ScenarioRoutes
@@ -172,7 +172,7 @@ class Api:
 
         def done() -> tuple[bytes, int]:
             carry_out(found, asked)
-            return status_json(found), next_number()
+            return status_json(found), self._found.next_number()
 
         shown, number = await found.ask(done)
         self._found.log.write("command", machine=machine, door="http", asked=asked)
@@ -184,4 +184,5 @@ class Api:
         if found is None:
             await socket.close(1008, "there is no such machine")
             return
-        await Stream(socket, found, rate_of(socket.query_params.get("rate")), self._leases.of(machine)).run()
+        rate, lease = rate_of(socket.query_params.get("rate")), self._leases.of(machine)
+        await Stream(socket, found, rate, lease, self._found.next_number).run()

@@ -5,13 +5,14 @@ from __future__ import annotations
 import asyncio
 import contextlib
 import json
+from collections.abc import Callable
 from typing import Any
 
 from starlette.websockets import WebSocket, WebSocketDisconnect
 
 from polycnc.errors import PolycncError
 from polycnc.servers.commands import carry_out
-from polycnc.servers.http._documents import inventory_parts, next_number, status_json
+from polycnc.servers.http._documents import inventory_parts, status_json
 from polycnc.servers.http._lease import Lease
 from polycnc.servers.machines import ServedMachine
 
@@ -37,7 +38,15 @@ class Stream:
     does not press it again.
     """
 
-    def __init__(self, socket: WebSocket, machine: ServedMachine, rate: float, lease: Lease) -> None:
+    def __init__(
+        self,
+        socket: WebSocket,
+        machine: ServedMachine,
+        rate: float,
+        lease: Lease,
+        next_number: Callable[[], int],
+    ) -> None:
+        self._next_number = next_number
         self._socket = socket
         self._machine = machine
         self._lease = lease
@@ -70,7 +79,7 @@ class Stream:
         parts = inventory_parts(self._machine, self._known)
         rate, lease = self._machine.keeper.pace.rate, self._lease.shown().model_dump_json()
         told = f'"status":{status},"inventory":{json.dumps(parts)},"rate":{rate!r},"lease":{lease}'
-        return f'{{"number":{next_number()},{told}}}'
+        return f'{{"number":{self._next_number()},{told}}}'
 
     async def _read(self) -> None:
         while True:
