@@ -37,6 +37,7 @@ from polycnc.controllers.library import (
     layouts,
     variant,
 )
+from polycnc.controllers.library._structures import Element, Table, lay_out
 from polycnc.errors import UsageError
 
 
@@ -377,6 +378,16 @@ def test_a_structure_lies_in_memory_as_its_table_says() -> None:
     ]
     assert (reel.size, reel.union, table["Value"].union) == (62, False, True)
     assert isinstance(reel, Layout)
+
+
+def test_a_structure_takes_its_arrays_however_many_other_structures_there_are() -> None:
+    first, *_ = (
+        lay_out(f"T{count}", False, Table({"at": Element("short", ctypes.c_short, int, (count,))}))
+        for count in range(1, 300)
+    )
+    made = first()
+    made.at = [7]
+    assert made.at[0] == 7
 
 
 def test_members_of_a_union_are_the_same_memory() -> None:

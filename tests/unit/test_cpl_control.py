@@ -121,7 +121,7 @@ def test_inputs_are_false_and_outputs_can_be_set(root: Root) -> None:
     ).variables
     assert (found["#A?"], found["#C%"], found["#D%"]) == (False, 0, 1)
     assert root.error("1 IC(96,0,1)=TRUE") == "1: INVALID PARAMETER"
-    assert root.error("1 A?=IC(6,9)") == "1: INVALID PARAMETER"
+    assert root.error("1 A?=IC(8,9)") == "1: INVALID PARAMETER"
 
 
 def test_a_wait_that_cannot_end_is_an_error(root: Root) -> None:

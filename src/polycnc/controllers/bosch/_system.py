@@ -105,7 +105,7 @@ class BoschSystem:
         self.not_installed = [each for each in errors if each.code == _MEMORY_FULL]
         """Declared variables for which there is no memory: programs run without them."""
         self.links = LinkFiles(self.directory, str(self.parameter(LINK_FOLDER)), self.search_path)
-        self.interface = Interface(len(self.axes.channels), 64, _SPINDLES, pnc=False)
+        self.interface = Interface(len(self.axes.channels), 64, _SPINDLES)
         self.errors = ErrorList(len(self.axes.channels))
         self._alarms = PresentAlarms(self.errors, _NUMBERS)
         for each in self.not_installed:

@@ -13,7 +13,7 @@ from __future__ import annotations
 import ctypes
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
-from functools import lru_cache
+from functools import cache
 from operator import index
 from typing import Any, ClassVar, Self, TypeVar
 
@@ -110,7 +110,7 @@ class _Listed:
         return repr(list(self))  # type: ignore[call-overload]
 
 
-@lru_cache
+@cache  # the type that a structure was laid out with is the only one that it takes
 def _array(ctype: Any, count: int) -> Any:
     """Return the type of an array; texts stay those of ctypes."""
     if ctype is ctypes.c_char:
@@ -288,7 +288,7 @@ def layouts(*classes: type) -> dict[str, Layout]:
     return {cls.__name__: layout(cls) for cls in classes}
 
 
-@lru_cache
+@cache  # the type that a structure was laid out with is the only one that it takes
 def variant(cls: K, **counts: int) -> K:
     """Return a structure with the same elements and another number in arrays.
 
@@ -303,7 +303,7 @@ def variant(cls: K, **counts: int) -> K:
     return lay_out(cls.__name__, issubclass(cls, ctypes.Union), varied, variant_of=cls)  # type: ignore[no-any-return]
 
 
-@lru_cache
+@cache  # the type that a structure was laid out with is the only one that it takes
 def repacked(cls: K, pack: int) -> K:
     """Return a structure with the same elements, packed otherwise, what is inside too; it is a kind of `cls`."""
     table: Table = cls._table_  # type: ignore[attr-defined]
