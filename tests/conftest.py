@@ -30,7 +30,7 @@ from support.often import ALL_CASES
 REPOSITORY = Path(__file__).resolve().parents[1]
 
 os.environ["MPLBACKEND"] = "Agg"
-for name, examples in (("some cases", 20), ("all cases", 60)):
+for name, examples in (("some cases", 14), ("all cases", 60)):
     settings.register_profile(name, deadline=None, max_examples=examples, derandomize=True, database=None)
 settings.load_profile("some cases")
 

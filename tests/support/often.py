@@ -24,5 +24,5 @@ def often(cases: Sequence[Any], always: int) -> list[Any]:
 
 
 def share(count: int) -> int:
-    """Return how many of `count` random cases are tried: half of a few, a quarter of many; or all."""
-    return count if ALL_CASES in os.environ else max((min(count, 20) + 1) // 2, count // 4)
+    """Return how many of `count` random cases are tried: half of a few, a sixth of many; or all."""
+    return count if ALL_CASES in os.environ else max((min(count, 20) + 1) // 2, count // 6)
