@@ -21,7 +21,7 @@ from polycnc.errors import UsageError
 from support import operator_page, page_answers
 from support.browser import browser, new_page
 from support.command import polycnc, python
-from support.focas_line import Line
+from support.focas_line import Line, free_port
 from support.often import share
 from support.started import started
 
@@ -343,3 +343,44 @@ def test_a_state_is_kept_in_a_file_and_gone_back_to(
         with pytest.raises(UsageError, match=what):
             ask()
     assert (tmp_path / "text").read_text() == "O1"
+
+
+def test_the_page_shows_the_breakpoints_of_a_process_that_was_started_anew(chromium: Any) -> None:
+    """It counts what it tells from 1 again; nothing of that is taken for older than what the one before told."""
+    port = free_port()
+
+    def serve() -> Any:
+        process = started("serve", "--fanuc", "--doors", f"http={port}")
+        assert process.stdout.readline().startswith("http:")
+        made = http.put("/programs/O0044", content=b"O0044\nG1 X1 F60\nX2\nX3\nM30\n")
+        assert made.status_code == 201, made.text
+        for asked in (
+            {"command": "select_mode", "mode": "auto"},
+            {"command": "select_program", "program": "O0044"},
+        ):
+            assert http.post("/commands", json=asked).status_code == 200
+        return process
+
+    http = httpx.Client(base_url=f"http://127.0.0.1:{port}/api/machines/machine", timeout=60)
+    process = serve()
+    page = new_page(chromium, device_scale_factor=0.5)
+    page.goto(f"http://127.0.0.1:{port}")
+    page.wait_for_selector("body:not(.lost)")
+    clock = page.text_content("#clock")
+    operator_page.until(page, lambda: page.text_content("#clock") > clock)
+    page.click("#tab-run")
+    page.click("#lines li:nth-child(2)")
+    page.click("#breakpoint")
+    operator_page.until(page, lambda: http.get("/inventory").json()["breakpoints"])
+    process.kill()
+    process.communicate(timeout=60)
+    page.wait_for_selector("body.lost")
+    process = serve()
+    page.wait_for_selector("body:not(.lost)")
+    http.post("/commands", json={"command": "set_breakpoints", "program": "O0044", "lines": [3, 4]})
+    page.wait_for_selector("#lines li:nth-child(3).breakpoint")
+    assert page.locator("#lines .breakpoint").count() == 2
+    page.close()
+    http.close()
+    process.terminate()
+    process.communicate(timeout=60)

@@ -63,7 +63,7 @@ class Serving:
     doors: list[tuple[str, Door, Sequence[ServedMachine]]] = field(default_factory=list)
     """Each with the machines that it serves."""
     programs: dict[str, tuple[str, bytes]] = field(default_factory=dict)
-    """Name and content of what each machine runs."""
+    """Name and content of what each machine runs, until it has been started."""
     told: set[str] = field(default_factory=set)
     """Kinds of errors that `on_error` has been told of, once each."""
 
@@ -114,7 +114,7 @@ class Serving:
     async def start_programs(self) -> None:
         """Start the programs, without letting time pass."""
         for machine in self.machines:
-            if (found := self.programs.get(machine.name)) is not None:
+            if (found := self.programs.pop(machine.name, None)) is not None:
                 assert machine.load is not None
                 assert machine.served.again is not None
                 machine.load(*found)

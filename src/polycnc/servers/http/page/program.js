@@ -114,7 +114,8 @@ export class Program {
   // The machine has these; those that were set here stay until it has answered, and what it told before that is older.
   setBreakpoints(all, number) { this.told = { all, number }; this.takeBreakpoints(); }
   takeBreakpoints() {
-    if (this.held.holds || this.told.number < this.held.since || this.breakpoints === this.told.all) return;
+    const isOlder = this.told.number < this.held.since && this.held.since <= this.link.number; // another process counts anew
+    if (this.held.holds || isOlder || this.breakpoints === this.told.all) return;
     this.breakpoints = this.told.all;
     this.showBreakpoints();
   }
