@@ -172,7 +172,7 @@ class MachiningCollector:
         undercuts = any(
             number in mills and mills[number].undercuts for number in np.unique(course.tool).tolist()
         )
-        if self._turned or undercuts:
+        if self._turned or undercuts or isinstance(form.given, Voxels):
             if not self._turned:
                 form = form.told(course, mills)
             body = form.voxels(course, mills)
@@ -238,20 +238,23 @@ class MachiningCollector:
 
     def _cuts_nothing(self, tool: int) -> str:
         if tool == 0:
+            where, words = ("turret", "T0101, or T and M6,") if self._lathe else ("spindle", "T and M6")
             return (
-                "no tool is in the spindle in some cuts: nothing is removed there; program T and M6 before them,"
-                " or say the one that is there in a comment like (T1 D=10)"
+                f"no tool is in the {where} in some cuts: nothing is removed there; program {words} before them,"
+                f" or say the one that is there in a comment like {self._shape(1)}"
             )
         if not self._lathe and isinstance(turning_tools_of(self._config, self.texts).get(tool), Insert):
             return (
                 f"tool {tool} turns, and '{self._config.name}' has a Y axis: it cuts nothing here; run the program"
                 " on a lathe, like --machine lathe2"
             )
-        shape = f"(T{tool} CNMG120408)" if self._lathe else f"(T{tool} D=10)"
         return (
-            f"the shape of tool {tool} is not known: it cuts nothing here; a comment like {shape}"
+            f"the shape of tool {tool} is not known: it cuts nothing here; a comment like {self._shape(tool)}"
             " or [tools] of the machine file tells it"
         )
+
+    def _shape(self, tool: int) -> str:
+        return f"(T{tool} CNMG120408)" if self._lathe else f"(T{tool} D=10)"
 
     def _missed(self, stock: Stock | Turned | Voxels, course: Rows) -> str:
         """Say where a body lies that no tool has met, and where they have cut; nothing if they have not."""

@@ -25,7 +25,7 @@ from polycnc.runner._trace import TraceCollector
 if TYPE_CHECKING:
     from polycnc.controllers.bosch import ChannelHost
     from polycnc.runner._machining import MachiningCollector
-    from polycnc.stock import Form
+    from polycnc.stock import Body, Form
 
 
 @overload
@@ -48,7 +48,7 @@ def run(
     screen: str | Path | None = None,
     ignore: Iterable[str] = (),
     loop_limit_s: float = LOOP_LIMIT_S,
-    stock: str | None = None,
+    stock: str | Body | None = None,
     resolution_mm: float | None = None,
     fixtures: Iterable[str] = (),
     target: str | None = None,
@@ -76,7 +76,7 @@ def run(
     screen: str | Path | None = None,
     ignore: Iterable[str] = (),
     loop_limit_s: float = LOOP_LIMIT_S,
-    stock: str | None = None,
+    stock: str | Body | None = None,
     resolution_mm: float | None = None,
     fixtures: Iterable[str] = (),
     target: str | None = None,
@@ -103,7 +103,7 @@ def run(
     screen: str | Path | None = None,
     ignore: Iterable[str] = (),
     loop_limit_s: float = LOOP_LIMIT_S,
-    stock: str | None = None,
+    stock: str | Body | None = None,
     resolution_mm: float | None = None,
     fixtures: Iterable[str] = (),
     target: str | None = None,
@@ -111,26 +111,27 @@ def run(
 ) -> RunResult:
     """Run a part program on a simulated machine and return times, lengths, extents and messages.
 
-    `program` is a path, or the text itself if it has more than one line. `machine` is a preset, a TOML file
-    or a configuration (if absent the 3-axis mill, or a lathe where the dialect is one of lathes), `dialect` a name
-    (chosen by the file's extension, else DIN). With `trace` the result holds one row per control cycle; `rows` gets
-    the same in pieces, [cycles, columns], as it is recorded, `tagged_rows` gets with each piece the tags of its blocks
-    and the records that read them. `servo` simulates the position loops. Blocks with a skip mark `/n`
-    are left out for n in `skip_levels`. Program stops are passed, and told in the messages; with `stop_at_m0` the
-    run ends at the first M0. `feed_override` is the operator's, up to 2. `progress` is called now and then with the
-    part that is done, 0 to 1; it goes back where sub-programs repeat. `ignore` names G and M codes, like "G43.4", that
-    count as if they were not there.
+    `program` is a path, or the text itself if it has more than one line. `machine` is a preset, a TOML file or a
+    configuration (if absent the 3-axis mill, or a lathe where the dialect is one of lathes), `dialect` a name (chosen
+    by what the program says and its extension; `guessed` in the result says why). With `trace` the result holds one
+    row per control cycle; `rows` gets the same in pieces, [cycles, columns], as it is recorded, `tagged_rows` gets
+    with each piece the tags of its blocks and the records that read them. `servo` simulates the position loops.
+    Blocks with a skip mark `/n` are left out for n in `skip_levels`. Program stops are passed, and told in the
+    messages; with `stop_at_m0` the run ends at the first M0. `feed_override` is the operator's, up to 2. `progress`
+    is called now and then with the part that is done, 0 to 1; it goes back where sub-programs repeat. `ignore` names
+    G and M codes, like "G43.4", that count as if they were not there.
 
     Where the dialect has a language (CPL), `root` is the folder with the control's files, that of the program if
     absent; `keys` are pressed when the program asks for one, and what it has shown at the end is written to
     `screen` (.txt, .svg or .png). A loop of its statements may go round for `loop_limit_s` of the machine's time
     without a block or a WAIT; one that comes back to where it was is an error at once.
 
-    With `stock` the tools cut a body: `auto`, `box=X0,Y0,Z0,X1,Y1,Z1`, `cylinder=D,Z0,Z1` (mm, work coordinates) or an
-    STL file, in cells of `resolution_mm`. `fixtures` are boxes and STL files that nothing may touch, `target` is the
-    STL file of what is to come out, within `tolerance_mm` (0.02 mm if absent). What is left, what was removed and what
-    went wrong are in the result: `stock`, `removed_mm3`, `collisions`, `machined`. A machine file may say what is cut,
-    and what holds it, where these arguments do not.
+    With `stock` the tools cut a body: `auto`, `box=X0,Y0,Z0,X1,Y1,Z1`, `cylinder=D,Z0,Z1` (mm, work coordinates), an
+    STL file, in cells of `resolution_mm`, or the body that a run before left (`result.stock`, which stays as it is).
+    `fixtures` are boxes and STL files that nothing may touch, `target` is the STL file of what is to come out, within
+    `tolerance_mm` (0.02 mm if absent). What is left, what was removed and what went wrong are in the result: `stock`,
+    `removed_mm3`, `collisions`, `machined`. A machine file may say what is cut, and what holds it, where these
+    arguments do not.
 
     Raises:
         ProgramError: with `check`, the program cannot be run as written; what ran before it is in `.result`.

@@ -15,7 +15,7 @@ from polycnc.runner._program_control import Surroundings, check_screen_file, roo
 
 if TYPE_CHECKING:
     from polycnc.controllers.bosch import ChannelHost
-    from polycnc.stock import Form
+    from polycnc.stock import Body, Form
 
 Program = str | Path | ProgramText
 
@@ -51,7 +51,7 @@ class RunSettings:
     screen: str | Path | None = None
     ignore: tuple[str, ...] = ()
     loop_limit_s: float = LOOP_LIMIT_S
-    stock: str | None = None
+    stock: str | Body | None = None
     resolution_mm: float | None = None
     fixtures: tuple[str, ...] = ()
     target: str | None = None
@@ -103,11 +103,20 @@ class RunSettings:
         """
         if self.stock is None:
             return None
-        from polycnc.stock import TOLERANCE_MM, Form, check_fixtures
+        from polycnc.stock import TOLERANCE_MM, Body, Form, check_fixtures
 
         check_fixtures(self.fixtures)
         tolerance_mm = TOLERANCE_MM if self.tolerance_mm is None else self.tolerance_mm
-        return Form(self.stock, self.resolution_mm, self.fixtures, self.target, tolerance_mm)
+        beside = self.fixtures, self.target, tolerance_mm
+        if isinstance(self.stock, str):
+            return Form(self.stock, self.resolution_mm, *beside)
+        if not isinstance(self.stock, Body):
+            raise UsageError(
+                f"'{self.stock!r}' is no stock", hint="Give its text, like 'auto', or result.stock of a run."
+            )
+        if self.resolution_mm is not None:
+            raise UsageError("a resolution for a body that has one", hint="Leave it out.")
+        return Form("", None, *beside, given=self.stock)
 
     def dialect_of(self, text: ProgramText) -> ChosenDialect:
         """Return the dialect of a program, without the codes that are ignored, and why it was guessed.

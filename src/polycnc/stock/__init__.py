@@ -6,7 +6,7 @@ from polycnc.stock._course import Course
 from polycnc.stock._cutting import Cutting
 from polycnc.stock._engagement import Engagement
 from polycnc.stock._fixtures import check_fixtures, fixtures_of, solid_fixtures_of
-from polycnc.stock._form import Form, file_of
+from polycnc.stock._form import Body, Form, file_of
 from polycnc.stock._insert import Insert, InsertKind, grooving_tool, iso_insert, threading_tool
 from polycnc.stock._mesh import Mesh
 from polycnc.stock._mesh_files import MESH_FORMATS
@@ -30,6 +30,7 @@ __all__ = [
     "MESH_FORMATS",
     "TOLERANCE_MM",
     "Arc",
+    "Body",
     "Box",
     "Contact",
     "ContactKind",

@@ -24,13 +24,16 @@ CELLS_ACROSS = 1000
 _FORMS = "auto, box=X0,Y0,Z0,X1,Y1,Z1, cylinder=D,Z0,Z1 or the name of an STL file"
 _TURNS = ("x", "y")
 
+Body = Stock | Turned | Voxels
+"""What is left of a body, and can be cut again."""
+
 
 @dataclass(frozen=True, slots=True)
 class Form:
     """Say what body to cut: its text, and the resolution (mm) if one was given.
 
     `fixtures` are texts of what stands beside it, `target` is the STL file of what is to come out, within
-    `tolerance_mm`.
+    `tolerance_mm`. `given` is a body in place of the text, like that of a run before; it stays as it is.
     """
 
     text: str
@@ -38,10 +41,13 @@ class Form:
     fixtures: tuple[str, ...] = ()
     target: str | None = None
     tolerance_mm: float = TOLERANCE_MM
+    given: Body | None = None
 
     def __post_init__(self) -> None:
         kind, _, numbers = self.text.partition("=")
-        if kind in ("box", "cylinder"):
+        if self.given is not None:
+            pass
+        elif kind in ("box", "cylinder"):
             numbers_of(self.text, numbers, 6 if kind == "box" else 3)
         elif self.text != "auto" and not _file_of(self.text)[0].lower().endswith(".stl"):
             raise UsageError(f"'{self.text}' is no stock", hint=f"Write {_FORMS}.")
@@ -57,6 +63,9 @@ class Form:
         Raises:
             UsageError: nothing is cut, no such file, or a body that cannot be told.
         """
+        if isinstance(self.given, Stock):
+            return self.given.copy()
+        self._refuse_given("a mill")
         kind, _, numbers = self.text.partition("=")
         if kind == "box":
             x0, y0, z0, x1, y1, z1 = numbers_of(self.text, numbers, 6)
@@ -77,6 +86,9 @@ class Form:
         Raises:
             UsageError: nothing is cut, or a body that no lathe turns.
         """
+        if isinstance(self.given, Turned):
+            return self.given.copy()
+        self._refuse_given("a lathe")
         if self.text == "auto":
             diameter, low, high = around_turned(course)
         elif self.text.startswith("cylinder="):
@@ -100,6 +112,12 @@ class Form:
         """
         if self.target is not None:
             raise UsageError("a target with turning axes or tools that undercut", hint="Leave it out.")
+        if isinstance(self.given, Voxels):
+            return self.given.copy()
+        if isinstance(self.given, Stock):
+            size = max(b - a for a, b in zip(self.given.box.low, self.given.box.high, strict=True))
+            return Voxels.of_heights(self.given, self.cell_mm or _cell_mm(_FINER_TURNED * size))
+        self._refuse_given("a mill")
         kind, _, numbers = self.text.partition("=")
         if kind == "box":
             x0, y0, z0, x1, y1, z1 = numbers_of(self.text, numbers, 6)
@@ -117,6 +135,13 @@ class Form:
         found = Voxels(box, self.cell_mm or _cell_mm(_FINER_TURNED * size))
         leave_out_rapids(found, course, tools)
         return found
+
+    def _refuse_given(self, machine: str) -> None:
+        if self.given is not None:
+            raise UsageError(
+                f"'{self.given}' as stock of {machine}",
+                hint="Give a body that such a machine left, or save it as an STL file: stock.mesh().write('NAME.stl').",
+            )
 
     def target_of(self, stock: Stock) -> Target | None:
         """Return what is to come out of a body; None if that is not said.

@@ -9,7 +9,7 @@ import numpy.typing as npt
 
 from polycnc.errors import UsageError
 from polycnc.stock._mesh import Mesh
-from polycnc.stock._stock import Box, check_cell
+from polycnc.stock._stock import Box, Stock, check_cell
 from polycnc.stock._voxel_mesh import surface_of
 from polycnc.stock._voxel_sweep import FULL
 
@@ -72,6 +72,29 @@ class Voxels:
         for layer in found.cells:
             layer[...] = np.rint(layer.max() * share)
         found.name = f"cylinder of {diameter_mm:g} mm from Z{low_z:g} to Z{high_z:g}"
+        return found
+
+    @classmethod
+    def of_heights(cls, stock: Stock, cell_mm: float) -> Voxels:
+        """Return what is left of a body seen from above.
+
+        Raises:
+            UsageError: too many cells.
+        """
+        found = cls(stock.box, cell_mm)
+        grid = stock.grid
+        x, y = (
+            np.rint((found.first[i] + cell_mm * np.arange(found.cells.shape[2 - i]) - first) / grid.cell_mm)
+            .clip(0, grid.z.shape[1 - i] - 1)
+            .astype(np.int64)
+            for i, first in enumerate((grid.x0, grid.y0))
+        )
+        heights = grid.z[np.ix_(y, x)]
+        for index, layer in enumerate(found.cells):
+            low = max(found.first[2] + (index - 0.5) * cell_mm, grid.bottom)
+            high = min(found.first[2] + (index + 0.5) * cell_mm, stock.box.high[2])
+            layer[...] = np.rint(layer * np.clip((heights - low) / (high - low), 0.0, 1.0))
+        found.name = str(stock)
         return found
 
     def copy(self) -> Voxels:

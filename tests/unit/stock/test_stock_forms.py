@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import replace
 from itertools import pairwise
 from pathlib import Path
@@ -23,6 +24,8 @@ from polycnc.stock import (
     Stock,
     Tool,
     ToolKind,
+    Turned,
+    Voxels,
     read_stl,
     stock_of_remarks,
     tool_number,
@@ -416,3 +419,58 @@ def test_a_remark_says_what_auto_is() -> None:
     given = polycnc.run(text, "mill3", "fanuc", stock="box=0,-4,-5,31,21,2", resolution_mm=1.0).machined
     assert given is not None
     assert given.stock.box.low[0] == 0.0
+
+
+SLOT = "(T1 D=6)\nG0 X0 Y0 Z10\nT1 M6\nS1000 M3\nG1 Z-{deep} F3000\nG1 X10\nG0 Z10\nM30\n"
+TILTED = "(T1 D=6)\nT1 M6\nS1000 M3\nG0 X0 Y0 Z10 A0\nG1 Z-2 F3000\nG1 X10 A10\nG0 Z20\nM30\n"
+BAR = "(T1 CNMG120408)\nT0101\nM3 S500\nG0 X{x} Z2\nG1 Z-10 F3000\nG0 X50\nM30\n"
+
+
+def test_the_body_of_a_run_is_cut_on_and_stays_as_it_is() -> None:
+    first = polycnc.run(SLOT.format(deep=2), stock="box=-4,-4,-3,14,4,0")
+    assert first.stock is not None
+    left = first.stock.volume_mm3
+    again = polycnc.run(SLOT.format(deep=2), stock=first.stock)
+    deeper = polycnc.run(SLOT.format(deep=2.5), stock=first.stock)
+    assert again.removed_mm3 == 0.0
+    assert deeper.removed_mm3 == pytest.approx(first.removed_mm3 / 4.0, rel=1e-3)
+    assert deeper.stock is not None
+    assert first.stock.volume_mm3 == left
+    assert deeper.stock.volume_mm3 == pytest.approx(left - deeper.removed_mm3)
+
+
+def test_a_body_goes_from_three_axes_to_five_and_back() -> None:
+    flat = polycnc.run(SLOT.format(deep=2), stock="box=-4,-4,-3,14,4,0", resolution_mm=0.1)
+    tilted = polycnc.run(TILTED, "mill5", stock=flat.stock)
+    assert isinstance(tilted.stock, Voxels)
+    assert flat.stock is not None
+    assert flat.stock.volume_mm3 - tilted.removed_mm3 == pytest.approx(tilted.stock.volume_mm3, rel=1e-3)
+    assert tilted.removed_mm3 > 5.0
+    back = polycnc.run(SLOT.format(deep=2), stock=tilted.stock)
+    assert back.removed_mm3 < 0.01 * flat.removed_mm3
+
+
+def test_a_bar_of_a_lathe_is_cut_on() -> None:
+    first = polycnc.run(BAR.format(x=18), "lathe2", "fanuc-lathe", stock="cylinder=20,-30,0")
+    again = polycnc.run(BAR.format(x=18), "lathe2", "fanuc-lathe", stock=first.stock)
+    assert first.removed_mm3 > 100.0
+    assert again.removed_mm3 == 0.0
+
+
+@pytest.mark.parametrize(
+    ("stock", "machine", "resolution_mm", "says"),
+    [
+        (Stock(Box((0, 0, 0), (9, 9, 9)), 1.0), "lathe2", None, "'box of 9 x 9 x 9 mm' as stock of a lathe"),
+        (Turned(20.0, -9.0, 0.0, 0.1), "mill3", None, "as stock of a mill"),
+        (Turned(20.0, -9.0, 0.0, 0.1), "mill5", None, "as stock of a mill"),
+        (Stock(Box((0, 0, 0), (9, 9, 9)), 1.0), "mill3", 0.1, "a resolution for a body"),
+        (5, "mill3", None, "'5' is no stock"),
+    ],
+)
+def test_a_body_that_cannot_be_cut_there_is_refused(
+    stock: Stock | Turned, machine: str, resolution_mm: float | None, says: str
+) -> None:
+    program = {"lathe2": BAR.format(x=18), "mill3": SLOT.format(deep=2), "mill5": TILTED}[machine]
+    dialect = "fanuc-lathe" if machine == "lathe2" else None
+    with pytest.raises(UsageError, match=re.escape(says)):
+        polycnc.run(program, machine, dialect, stock=stock, resolution_mm=resolution_mm)
