@@ -63,7 +63,3 @@ __all__ = [
 
 
 __getattr__ = names_on_demand(__name__)
-
-
-def __dir__() -> list[str]:
-    return sorted([*__all__, *(name for name in globals() if name.startswith("__"))])

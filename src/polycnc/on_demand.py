@@ -10,8 +10,13 @@ from typing import Any
 
 
 def names_on_demand(package: str) -> Callable[[str], Any]:
-    """Return the `__getattr__` of a package that loads what it imports under `if TYPE_CHECKING:`."""
+    """Return the `__getattr__` of a package that loads what it imports under `if TYPE_CHECKING:`.
+
+    `dir` of the package shows its public names then, loaded or not.
+    """
     homes: dict[str, str] = {}
+    module = vars(sys.modules[package])
+    module["__dir__"] = lambda: sorted([*module["__all__"], *(name for name in module if name[:2] == "__")])
 
     def get(name: str) -> Any:
         if not homes:

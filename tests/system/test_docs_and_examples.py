@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import inspect
 import re
 import shutil
 from pathlib import Path
@@ -132,6 +133,36 @@ def test_library_page_names_everything_public() -> None:
     text = (REPOSITORY / "docs" / "reference" / "library.md").read_text(encoding="utf-8")
     missing = [name for name in polycnc.__all__ if f"`{name}" not in text]
     assert missing == []
+
+
+@pytest.mark.parametrize(
+    "name", [name for name in polycnc.__all__ if inspect.isfunction(getattr(polycnc, name))]
+)
+def test_library_page_has_every_function_as_it_is_called(name: str) -> None:
+    text = (REPOSITORY / "docs" / "reference" / "library.md").read_text(encoding="utf-8")
+    whole = inspect.signature(getattr(polycnc, name))
+    bare = whole.replace(
+        parameters=[each.replace(annotation=inspect.Parameter.empty) for each in whole.parameters.values()],
+        return_annotation=inspect.Signature.empty,
+    )
+    assert f"### `{name}{bare}`" in text
+    section = text.partition(f"### `{name}")[2].partition("\n")[2].partition("\n#")[0]
+    obvious = {
+        "a",
+        "b",
+        "path",
+        "paths",
+        "source",
+        "trace",
+        "result",
+        "program",
+        "machine",
+        "dialect",
+        "machine_b",
+        "dialect_b",
+    }
+    unsaid = [each for each in whole.parameters if each not in obvious and f"`{each}`" not in section]
+    assert unsaid == []
 
 
 def test_result_page_names_every_field() -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+import importlib
 import re
 import runpy
 import shutil
@@ -16,6 +17,11 @@ from typing import Any
 import pytest
 
 import polycnc
+from polycnc.cnc import Control
+from polycnc.controllers.apci import Board
+from polycnc.controllers.bosch import Pnc
+from polycnc.controllers.fanuc import PowerMate
+from polycnc.controllers.imc import Card
 from support.command import environment
 from support.pages import fences
 
@@ -64,6 +70,29 @@ def test_the_wheel_has_everything_that_is_no_code(built: list[Path]) -> None:
 def test_the_package_lists_its_public_names_alone() -> None:
     assert {name for name in dir(polycnc) if not name.startswith("__")} == set(polycnc.__all__)
     assert "__version__" in dir(polycnc)
+
+
+@pytest.mark.parametrize("package", ["cnc", "machine", "runner", "nc.macro", "servers.focas"])
+def test_a_package_shows_its_public_names_and_no_others(package: str) -> None:
+    module = importlib.import_module(f"polycnc.{package}")
+    assert {name for name in dir(module) if not name.startswith("__")} == set(module.__all__)
+
+
+def test_devices_say_what_they_are_and_what_they_do(tmp_path: Path) -> None:
+    pnc = Pnc(tmp_path)
+    try:
+        assert repr(pnc) == f"<Pnc in {tmp_path.resolve()}: <Control of mill3: auto, ready, 0.000 s>>"
+    finally:
+        pnc.close()
+    control = Control("mill3")
+    control.programs.create("P", "G1 X10 F600\nM30\n")
+    control.select_program("P")
+    control.cycle_start()
+    control.advance(500)
+    assert repr(control) == "<Control of mill3: auto, active, 0.500 s>"
+    assert repr(PowerMate(2, "D")) == "<Power Mate-D, 2 axes: MEM, 0.000 s>"
+    assert repr(Board()) == "<Board of 3 axes: 0.000 s>"
+    assert repr(Card()) == "<Card of 4 axes: 0.000 s>"
 
 
 PLUGIN_CONFTEST = """

@@ -85,6 +85,9 @@ class Control:
         self._inventory = InventoryReader(of)
         self.manual.check_limit_switches()
 
+    def __repr__(self) -> str:
+        return f"<Control of {self._parts}>"
+
     @property
     def dialect(self) -> Dialect:
         """The dialect of the programs."""

@@ -65,6 +65,12 @@ class ControlParts:
     relative_zero: list[float] = field(default_factory=list)
     beside: Beside | None = None
 
+    def __str__(self) -> str:
+        states = ", ".join(channel.run_state.value for channel in self.channels)
+        return (
+            f"{self.machine.config.name}: {self.channels[0].mode.value}, {states}, {self.clock.now_s:.3f} s"
+        )
+
     def channel(self, number: int) -> ControlChannel:
         """Return a channel by its number, from 0.
 

@@ -105,6 +105,9 @@ class Pnc:
         self._dialogs = DialogCalls(self.system.directory, self.system.parameters, self._start_dialog)
         self._dialog_channel = int(str(self.system.parameter(DIALOG_CHANNEL)))
 
+    def __repr__(self) -> str:
+        return f"<Pnc in {self.system.directory.root}: {self._control!r}>"
+
     @property
     def clock(self) -> Clock:
         """The clock, counted in control cycles."""
@@ -206,20 +209,8 @@ class Pnc:
             ControlError: There is no such block, or the program does not come to it; see `Control.search`.
         """
         program = self._control.channels[self._path(channel)].program
-        lines = [] if program is None else program.content.splitlines()
-        blocks = [line.decode("latin-1") for line in lines]
-        first = find_block(blocks, start) if start else 0
-        last = find_block(blocks, end, first or 0) if end else -1
-        for sought, found in ((start, first), (end, last)):
-            if found is None:
-                raise ControlError(
-                    Refusal.NOT_FOUND, f"there is no block {sought}", hint="Give its beginning."
-                )
-        assert first is not None
-        assert last is not None
-        return self._control.search(
-            line=first + 1, calculate=first > 0, last=last + 1, channel=self._path(channel)
-        )
+        first, last = _found_lines(program, start, end)
+        return self._control.search(line=first, calculate=first > 1, last=last, channel=self._path(channel))
 
     @property
     def dialogs(self) -> tuple[str, ...]:
@@ -355,3 +346,14 @@ def _owners(shares: Sequence[tuple[str, ...]], names: Sequence[str]) -> list[Cha
     return [
         ChannelData((*share, *left) if n == 0 else share, spindle=n == 0) for n, share in enumerate(shares)
     ]
+
+
+def _found_lines(program: ProgramText | None, start: str, end: str) -> tuple[int, int]:
+    """Return the lines of the first block that begins with `start`, and of the first from there with `end`, or 0."""
+    blocks = [] if program is None else [line.decode("latin-1") for line in program.content.splitlines()]
+    first = find_block(blocks, start) if start else 0
+    last = find_block(blocks, end, first or 0) if end else -1
+    if first is None or last is None:
+        sought = start if first is None else end
+        raise ControlError(Refusal.NOT_FOUND, f"there is no block {sought}", hint="Give its beginning.")
+    return first + 1, last + 1

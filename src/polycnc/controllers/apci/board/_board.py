@@ -18,6 +18,9 @@ class Board(CommandedBoard):
     `record_scans` is the size of the recorder's buffer (`kernel.recorder`), 0 for none; a full one keeps what it has.
     """
 
+    def __repr__(self) -> str:
+        return f"<Board of {len(self.axes)} axes: {self.time_s:.3f} s>"
+
     def rebuild(self, config: SystemFile) -> None:
         """Be the board of another system file, just booted; what had been got from this one before is void."""
         self.is_described = True

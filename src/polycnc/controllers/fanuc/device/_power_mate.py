@@ -106,9 +106,8 @@ class PowerMate:
         ports = parameters, self.tool_offsets, state.signals, state.macros, note
         variables = partial(PowerMateVariables, power, *ports)
         self.custom_macros = Macros(self.macros, power, parameters, variables, state.macros)
-        buttons = _buttons_of(self)
         read = power, parameters, units, self.positions, self.custom_macros, state
-        self.signals = Signals(*read, buttons, lambda address: self.panel.image(address), note)
+        self.signals = Signals(*read, _buttons_of(self), lambda address: self.panel.image(address), note)
         self.panel = Panel(store, self.signals, state, self.select_mode)
         self.pmc = PmcMemory(store, self.signals, state.pmc, note, self.skip.give)
         self.axis_motion = AxisMotion(power, units, self.positions, state.signals, state.axis_motion)
@@ -118,6 +117,9 @@ class PowerMate:
         if self.programs.selected not in self.programs:
             self.programs.unselect()
         self._begin_signals()
+
+    def __repr__(self) -> str:
+        return f"<Power Mate-{self.model}, {self.axes} axes: {self.mode.name}, {self.clock.now_s:.3f} s>"
 
     # ------------------------------------------------------------------ what it is
 
@@ -326,8 +328,6 @@ class PowerMate:
         """Switch off: save the timers and close the memory."""
         self.control.timers.save()
         self.store.close()
-
-    # ------------------------------------------------------------------ within
 
     def _begin_signals(self) -> None:
         """Let signals, panel and histories begin with the power."""

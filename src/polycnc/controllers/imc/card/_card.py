@@ -73,6 +73,9 @@ class Card:
         self.state: CardState = make_card(self.config)
         self.clock = Clock(CYCLE_S)
 
+    def __repr__(self) -> str:
+        return f"<Card of {self.axes} axes: {self.clock.now_s:.3f} s>"
+
     # ------------------------------------------------------------------ memory
 
     @property
