@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 import numpy as np
@@ -392,3 +393,71 @@ def test_what_can_be_read_beyond_an_error_is_run_on_request() -> None:
 def test_no_extension_means_two_dialects() -> None:
     extensions = [extension for name in DIALECTS for extension in load_dialect(name).extensions]
     assert len(extensions) == len(set(extensions))
+
+
+def _dialect(folder: Path, name: str, text: str) -> Dialect:
+    (folder / name).write_text(text)
+    return load_dialect(folder / name)
+
+
+def test_a_dialect_on_another_says_what_differs(tmp_path: Path) -> None:
+    haas = load_dialect("haas")
+    page = Path(__file__).parents[2] / "docs" / "reference" / "dialects.md"
+    text = page.read_text(encoding="utf-8").partition('title="our-haas.toml"\n')[2].partition("```")[0]
+    ours = _dialect(tmp_path, "our-haas.toml", text)
+    assert (ours.name, ours.description, ours.extensions) == ("our-haas", "", ())
+    assert ours.g == {**haas.g, "93": "feed_inverse_time"}
+    assert ours.m == {**{code: action for code, action in haas.m.items() if code != "19"}, "36": "left_out"}
+    assert haas.increment
+    assert not ours.increment
+    assert ours.numbers.least_input == haas.numbers.least_input
+    kept = set(Dialect.model_fields) - {
+        "name",
+        "description",
+        "extensions",
+        "base",
+        "without",
+        "g",
+        "m",
+        "numbers",
+    }
+    assert all(getattr(ours, key) == getattr(haas, key) for key in kept)
+    third = _dialect(
+        tmp_path,
+        "third.toml",
+        'name = "third"\nbase = "our-haas.toml"\ndwell = { P = "s" }\n[g]\n94 = "nothing"\n',
+    )
+    assert third.dwell == {"P": "s"}
+    assert third.g == {**ours.g, "94": "nothing"}
+    assert third.m == ours.m
+
+
+@pytest.mark.parametrize(
+    ("text", "place", "says"),
+    [
+        ('name = "a"\nbase = "hass"\n', "a.toml:2:1", "there is no dialect 'hass'"),
+        (
+            'name = "a"\nbase = "haas"\nwithout = ["G5000"]\n',
+            "a.toml:3:12",
+            "'G5000' is no code of dialect 'haas'",
+        ),
+        (
+            'name = "a"\nbase = "haas"\nwithout = ["G4", 4]\n',
+            "a.toml:3:18",
+            "'4' is no code of dialect 'haas'",
+        ),
+        ('name = "a"\nwithout = ["G4"]\n[g]\n[m]\n', "a.toml:2:1", "there is no base to leave codes out of"),
+        ('name = "a"\nbase = "a.toml"\n', "a.toml:2:1", "each the base of the one before"),
+        ('name = "a"\nbase = "gone.toml"\n', "", "cannot read"),
+        ('name = "a"\nbase = 5\n[g]\n[m]\n', "a.toml:2:1", "base"),
+        ('base = "haas"\n', "a.toml", "name"),
+        ('name = "a"\nbase = "haas"\n[g]\n1 = "liner"\n', "a.toml:4:1", "'liner' is not an action"),
+        ('name = "a"\nbase = "wrong.toml"\n', "wrong.toml:3:1", "'liner' is not an action"),
+    ],
+)
+def test_a_wrong_base_is_refused_at_its_place(tmp_path: Path, text: str, place: str, says: str) -> None:
+    (tmp_path / "wrong.toml").write_text('name = "w"\n[g]\n1 = "liner"\n[m]\n')
+    with pytest.raises(ConfigurationError) as caught:
+        _dialect(tmp_path, "a.toml", text)
+    assert place in str(caught.value)
+    assert re.search(says, str(caught.value))

@@ -341,14 +341,6 @@ def test_system_b_says_the_same_by_other_codes(a: str, b: str) -> None:
     assert found == moves(f"{start}{a}\n", config=LATHE, dialect="fanuc-lathe")
 
 
-def test_system_b_is_system_a_but_for_the_codes_that_differ() -> None:
-    a, b = load_dialect("fanuc-lathe"), load_dialect("fanuc-lathe-b")
-    differ = {code for code in a.g.keys() | b.g.keys() if a.g.get(code) != b.g.get(code)}
-    assert differ == {"32", "33", "50", "77", "78", "79", "90", "91", "92", "94", "95", "98", "99"}
-    others = b.model_copy(update={"name": a.name, "description": a.description, "g": a.g})
-    assert others.model_copy(update={"incremental": a.incremental}) == a
-
-
 @pytest.mark.parametrize(
     ("block", "hint"),
     [

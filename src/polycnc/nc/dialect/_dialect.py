@@ -11,15 +11,16 @@ from collections.abc import Iterable
 from functools import cache, cached_property
 from importlib import resources
 from pathlib import Path
-from typing import Annotated, Literal, NamedTuple, TypeAlias
+from typing import Annotated, Any, Literal, NamedTuple, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
 from pydantic import AfterValidator, Field, model_validator
 
-from polycnc.errors import UsageError, did_you_mean
-from polycnc.machine import PathConfig, StrictModel, load_toml, parse_toml, problem, validate
+from polycnc.errors import ConfigurationError, UsageError, did_you_mean
+from polycnc.machine import Locator, PathConfig, StrictModel, load_toml, parse_toml, problem, validate
 from polycnc.nc.dialect._arc_settings import Arcs
+from polycnc.nc.dialect._base import CODE, on_base
 from polycnc.nc.dialect._cycle_settings import Cycles
 from polycnc.nc.modal._actions import M_ACTIONS, NO_SENSE, Action, Family, Group, MAction, of_family, sense_of
 from polycnc.nc.modal._modal import (
@@ -47,7 +48,6 @@ from polycnc.nc.text._program import TextRules
 G_CODES = 10000  # G0 to G999.9
 _LOW_M = 100  # M0 to M99 are looked at for what they switch
 
-_CODE = re.compile(r"([GgMm])[ \t]*([0-9]{1,5}(?:\.[0-9])?)")
 _PLANES = {"xy": PLANE_XY, "zx": PLANE_ZX, "yz": PLANE_YZ}
 _MOTIONS = {"none": MOTION_NONE, "rapid": MOTION_RAPID, "linear": MOTION_LINEAR}
 Refused: TypeAlias = Literal[
@@ -155,6 +155,14 @@ class Dialect(StrictModel):
     name: str = Field(min_length=1, description="Name of the dialect.")
     description: str = Field(default="", description="Any text.")
     extensions: tuple[str, ...] = Field(default=(), description="File extensions that mean this dialect.")
+    base: str | None = Field(
+        default=None,
+        description="A dialect, by name or file: what this file does not say is as there. Codes and the keys of tables "
+        "are taken one by one.",
+    )
+    without: tuple[str, ...] = Field(
+        default=(), description='Codes of the base that are none here, like `["G32", "M19"]`.'
+    )
     g: Annotated[dict[str, str], AfterValidator(_known_actions)] = Field(
         description="G code = action, see the table of actions."
     )
@@ -279,6 +287,12 @@ class Dialect(StrictModel):
     initial: Initial = Field(default=Initial(), description="See `[initial]`.")
 
     @model_validator(mode="after")
+    def _leaves_out_of_a_base(self) -> Dialect:
+        if self.without and self.base is None:
+            raise problem("there is no base to leave codes out of", hint="name a base", at=("without",))
+        return self
+
+    @model_validator(mode="after")
     def _extensions_have_dots(self) -> Dialect:
         for extension in self.extensions:
             if not extension.startswith("."):
@@ -346,7 +360,7 @@ class Dialect(StrictModel):
         """
         g, m = dict(self.g), dict(self.m)
         for code in codes:
-            found = _CODE.fullmatch(code.strip())
+            found = CODE.fullmatch(code.strip())
             if found is None:
                 raise UsageError(f"'{code}' is no G or M code", hint="Write codes like G43.4 or M98.")
             table, action = (g, "left_out") if found[1] in "Gg" else (m, "left_out")
@@ -413,11 +427,41 @@ DIALECTS: tuple[str, ...] = _SHIPPED
 """Names of the shipped dialects."""
 
 
-@cache
-def _shipped(name: str) -> Dialect:
+_MOST_BASES = 8
+
+
+def _shipped_data(name: str) -> tuple[dict[str, Any], Locator]:
     file = resources.files("polycnc.nc") / "dialects" / f"{name}.toml"
     data, locator = parse_toml(file.read_text(encoding="utf-8"), f"{name}.toml")
-    return validate(Dialect, data, locator)
+    return _whole(data, locator, Path()), locator
+
+
+@cache
+def _shipped(name: str) -> Dialect:
+    return validate(Dialect, *_shipped_data(name))
+
+
+def _whole(data: dict[str, Any], locator: Locator, folder: Path, over: int = 0) -> dict[str, Any]:
+    """Return what a file says with what its base says; `over` files stand on it."""
+    base = data.get("base")
+    if not isinstance(base, str):
+        return data
+    position = locator.position(("base",))
+    if base in _SHIPPED:
+        return on_base(data, _shipped_data(base)[0], locator)
+    path = folder / base
+    if path.suffix != ".toml":
+        hint = f"{did_you_mean(base, _SHIPPED)}Use {', '.join(_SHIPPED)}, or a TOML file beside this one."
+        raise ConfigurationError(f"there is no dialect '{base}'", hint=hint, position=position)
+    if over == _MOST_BASES:
+        hint = "A dialect may not be its own base."
+        raise ConfigurationError(
+            f"{over + 1} dialects, each the base of the one before", hint=hint, position=position
+        )
+    below, its_locator = load_toml(path)
+    whole = _whole(below, its_locator, path.parent, over + 1)
+    validate(Dialect, whole, its_locator)
+    return on_base(data, whole, locator)
 
 
 def load_dialect(source: str | Path | Dialect | None = None) -> Dialect:
@@ -436,7 +480,7 @@ def load_dialect(source: str | Path | Dialect | None = None) -> Dialect:
     path = Path(source)
     if path.suffix == ".toml" or path.is_file():
         data, locator = load_toml(path)
-        return validate(Dialect, data, locator)
+        return validate(Dialect, _whole(data, locator, path.parent), locator)
     raise UsageError(
         f"there is no dialect '{source}'",
         hint=f"{did_you_mean(str(source), _SHIPPED)}Use {', '.join(_SHIPPED)}, or a TOML file that describes one.",
