@@ -292,3 +292,38 @@ def test_an_alarm_from_outside_stops_everything_once() -> None:
     assert [alarm.text for alarm in made.status().alarms] == ["M8"]
     made.reset()
     assert made.status().alarms == ()
+
+
+CORNERS = "G1 X12 F4000\nY7\nG2 X20 Y15 R9 F2500\nG1 X3.3 Y1.1 F9000\nG0 X0 Y0\nM30\n"
+
+
+def test_setting_what_is_set_changes_no_bit_at_any_cycle() -> None:
+    """Not of the path, at whatever cycle it comes: an operator's panel sends its settings again and again."""
+
+    def moved(*, again: bool) -> list[tuple[float, float]]:
+        made = Control("mill3")
+        made.programs.create("PART", CORNERS)
+        made.select_program("PART")
+        made.set_overrides(feed=0.8, rapid=0.5)
+        made.set_switches(optional_stop=True)
+        made.cycle_start()
+        found = []
+        for _ in range(600):
+            if again:
+                made.set_overrides(feed=0.8, rapid=0.5, spindle=1.0)
+                made.set_switches(
+                    dry_run=False,
+                    optional_stop=True,
+                    single_block=False,
+                    machine_lock=False,
+                    block_delete=frozenset(),
+                )
+                made.select_mode(Mode.AUTO)
+                made.channels[0].set_breakpoints(frozenset())
+                made.channels[0].set_skip_signal(False)
+            made.advance(1)
+            axes = made.status().axes
+            found.append((axes["X"].machine, axes["Y"].machine))
+        return found
+
+    assert moved(again=True) == moved(again=False)

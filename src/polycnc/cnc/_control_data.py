@@ -11,7 +11,6 @@ from polycnc.cnc._program_memory import MemoryData
 from polycnc.cnc._refusal import ControlError, Refusal
 from polycnc.errors import UsageError, shown
 from polycnc.machine import LEAST_OVERRIDE
-from polycnc.units import is_finite
 
 
 class Mode(StrEnum):
@@ -140,7 +139,7 @@ class Overrides:
         if self.rapid not in data.rapid_overrides:
             steps = ", ".join(f"{step:g}" for step in data.rapid_overrides)
             raise _refused("rapid", self.rapid, f"The steps are {steps}; 1 is 100 %.")
-        if not (is_finite(self.spindle) and low <= self.spindle <= high):
+        if not low <= self.spindle <= high:
             raise _refused("spindle", self.spindle, f"Give {low:g} to {high:g}; 1 is 100 %.")
         return self
 

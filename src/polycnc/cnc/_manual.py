@@ -230,7 +230,8 @@ class ManualMotion:
     def stop_all(self, axes: Iterable[str] | None = None) -> None:
         """Brake these axes (None: all) to rest and end what they were doing by hand."""
         for i in range(len(self.motions)) if axes is None else map(self._index, axes):
-            self._profiles.stop(i)
+            if self.motions[i] is not REST:
+                self._profiles.stop(i)
 
     # ------------------------------------------------------------------ time
 

@@ -18,6 +18,19 @@ class PathHold:
         self.row = feed.row
         self.moment = moment
 
+    def brake(self, *, at_once: bool = False) -> None:
+        """Brake and stand, now or when the program lets it."""
+        moment = self.moment
+        if moment.state is RunState.ACTIVE and moment.suppressed.hold and not at_once:
+            moment.held_back = True
+        elif moment.state is RunState.ACTIVE:
+            moment.hold, moment.hold_later = True, not at_once
+            moment.state = RunState.HOLD
+            self.apply()
+        elif at_once and moment.hold_later:
+            moment.hold_later = False
+            self.apply()
+
     def apply(self) -> None:
         """Hold the path while anything holds it; take it over where it moves."""
         # The path stops before a segment that is in the look-ahead already.

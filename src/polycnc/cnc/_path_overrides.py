@@ -45,9 +45,9 @@ class PathOverrides:
         _check_factor(factor, self._most_feed, "the feed override")
         if self.kept is not None:
             self.kept = factor
-            return
-        self._row["override"] = factor
-        self._replan()
+        elif factor != self._row["override"]:
+            self._row["override"] = factor
+            self._replan()
 
     def suppress_feed(self, on: bool) -> None:
         """Let the feed override act no more, or again."""
@@ -66,9 +66,10 @@ class PathOverrides:
     def rapid(self, factor: float) -> None:
         _check_factor(factor, 1.0, "the rapid override")
         slow = factor == 0.0 and self._rapid_f0_mm_s > 0.0
-        self._row["rapid_override"] = 1.0 if slow else factor
-        self._row["rapid_top"] = self._rapid_f0_mm_s if slow else math.inf
-        self._replan()
+        wanted = 1.0 if slow else factor, self._rapid_f0_mm_s if slow else math.inf
+        if wanted != (self._row["rapid_override"], self._row["rapid_top"]):
+            self._row["rapid_override"], self._row["rapid_top"] = wanted
+            self._replan()
 
     @property
     def dry_run(self) -> bool:
@@ -79,8 +80,9 @@ class PathOverrides:
     def dry_run(self, on: bool) -> None:
         if on and not self._dry_run_mm_s > 0.0:
             raise UsageError("there is no feed for a dry run", hint="Give `dry_run_mm_s` in the options.")
-        self._row["dry_feed_mm_s"] = self._dry_run_mm_s if on else 0.0
-        self._replan()
+        if on is not self.dry_run:
+            self._row["dry_feed_mm_s"] = self._dry_run_mm_s if on else 0.0
+            self._replan()
 
 
 def _check_factor(factor: float, highest: float, what: str) -> None:

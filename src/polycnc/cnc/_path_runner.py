@@ -189,19 +189,6 @@ class PathRunner:
 
     # ------------------------------------------------------------------ going and standing
 
-    def hold(self, *, at_once: bool = False) -> None:
-        """Brake and stand, now or when the program lets it."""
-        moment = self.moment
-        if moment.state is RunState.ACTIVE and moment.suppressed.hold and not at_once:
-            moment.held_back = True
-        elif moment.state is RunState.ACTIVE:
-            moment.hold, moment.hold_later = True, not at_once
-            moment.state = RunState.HOLD
-            self.path_hold.apply()
-        elif at_once and moment.hold_later:
-            moment.hold_later = False
-            self.path_hold.apply()
-
     def go(self, step: Step) -> None:
         """Go on from where the program stands, as far as `step` says."""
         under_way = self.moment.unanswered or self.row["state"] in (kernel.RUNNING, kernel.HELD)
@@ -274,7 +261,7 @@ class PathRunner:
             self.feed.look_again()
         if self.moment.held_back and not now.hold:
             self.moment.held_back = False
-            self.hold()
+            self.path_hold.brake()
 
     def look(self) -> None:
         """See whether the path has come to an end, or to the end of a block."""

@@ -121,7 +121,7 @@ class ProgramRun:
 
         While the program suppresses feed holds it comes as soon as it does no more, or `at_once`.
         """
-        self._runner.hold(at_once=at_once)
+        self._runner.path_hold.brake(at_once=at_once)
 
     def resume(self) -> None:
         """Go on from a feed hold, a block's end, or a program stop.

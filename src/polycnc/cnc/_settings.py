@@ -123,7 +123,8 @@ class Settings:
             each.set_overrides(overrides)
         if channel is None:
             free = set(self._of.manual.names).difference(*(each.axes for each in chosen))
-            self._of.manual.set_overrides(feed=feed, rapid=rapid, axes=free)
+            if free:
+                self._of.manual.set_overrides(feed=feed, rapid=rapid, axes=free)
 
     def set_switches(
         self,

@@ -108,7 +108,7 @@ class Spindle:
         Raises:
             ControlError: Not a number from 0 to 2.
         """
-        if not (is_finite(override) and 0.0 <= override <= 2.0):
+        if not 0.0 <= override <= 2.0:
             raise ControlError(
                 Refusal.DATA,
                 f"a spindle override of {shown(override)} is out of range",
