@@ -200,6 +200,39 @@ def waves() -> str:
     return "\n".join(found)
 
 
+def climbs() -> str:
+    """Return lines with steep helices between, the last of which ends the program."""
+    found, x = ["F4000"], 0
+    for turn in range(4):
+        found += [f"G1 X{x + 3 + turn}", f"G2 X{x + 8 + turn} Y0 I2.5 J0 Z{(12, 0)[turn % 2]}"]
+        x += 8 + turn
+    return "\n".join(found)
+
+
+def posts() -> str:
+    """Return steep helices that meet."""
+    turns = (f"G{3 - turn % 2} X{4.4 * turn + 4.4:.1f} Y0 I2.2 J0 Z{(12, 0)[turn % 2]}" for turn in range(5))
+    return "\n".join(["F2400", *turns])
+
+
+def steps() -> str:
+    """Return helices with short lines between, which arcs round."""
+    found = ["F4500"]
+    for turn in range(6):
+        x = 10 * turn
+        found += [f"G2 X{x + 6} Y0 I3 J0 Z{(1, 0)[turn % 2]}", f"G1 X{x + 7} Y-0.5"]
+        found += [f"G1 X{x + 9} Y-0.2", f"G1 X{x + 10} Y0"]
+    return "\n".join(found)
+
+
+def hooks() -> str:
+    """Return helices that rise, each with a short line down, which ends the program as well."""
+    found = ["F3000"]
+    for turn in range(4):
+        found += [f"G2 X{7 * turn + 7} Y0 I3.5 J0 Z2", "G1 Z0"]
+    return "\n".join(found)
+
+
 # Servo cycles of 1 ms in which LinuxCNC 2.9 moved, with the same axes.
 THERE = [
     pytest.param(trochoid(lifted=True), "G64 P0.01", 13.419, id="helices back"),
@@ -220,6 +253,12 @@ THERE = [
     pytest.param(waves(), "G64 P0.01", 5.306, id="helix to helix"),
     pytest.param(waves(), "G64", 3.364, id="helix to helix, free"),
     pytest.param(waves(), "G61", 4.347, id="helix to helix, exact"),
+    pytest.param(climbs(), "G64", 2.061, id="ends with a steep helix, free"),
+    pytest.param(climbs(), "G64 P0.05 Q0.02", 2.549, id="ends with a steep helix"),
+    pytest.param(posts(), "G64", 2.009, id="steep helices that meet, free"),
+    pytest.param(posts(), "G64 P0.05 Q0.02", 2.386, id="steep helices that meet"),
+    pytest.param(steps(), "G64", 3.485, id="short lines with round corners"),
+    pytest.param(hooks(), "G64", 1.956, id="ends with a short line"),
 ]
 
 

@@ -38,6 +38,7 @@ from polycnc.kernel._segments import (
     ARC,
     CIRCLE3D,
     CIRCLE3D_LENGTH,
+    OVERLAPS,
     RAPID,
     ROUNDING,
     WITH_SPINDLE,
@@ -101,7 +102,7 @@ def blend_corner(
         line, limits, (p, q, r), work, cut, radius, turn, speed_mm_s
     ):
         return False
-    if line["length"] - cut < row["rounding_gap_s"] * speed:
+    if line["length"] - cut < row["rounding_gap_s"] * speed and not line["flags"] & OVERLAPS:
         line["flags"] |= ROUNDING
     work[CUT], work[CUT_LINE] = cut, row["tail"] + 1
     return _append_arc(seg, paths, g, k, (p, q, r), cut, radius, turn, speed_mm_s, tag)

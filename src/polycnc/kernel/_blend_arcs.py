@@ -34,6 +34,7 @@ from polycnc.kernel._segments import (
     CENTER_Q,
     CORNER_STOP,
     LINE,
+    OVERLAPS,
     RADIUS_END,
     RADIUS_START,
     RAPID,
@@ -220,7 +221,8 @@ def _round(
         return 0.0
     seg.end[k, p], seg.end[k, q] = start_p, start_q
     _shorten(seg, k, before, cut)
-    if before[2] <= 0.0 and line["length"] < row["rounding_gap_s"] * speed:
+    is_short = line["length"] < row["rounding_gap_s"] * speed and not line["flags"] & OVERLAPS
+    if before[2] <= 0.0 and is_short:
         line["flags"] |= ROUNDING
     work[CUT], work[CUT_LINE] = ways[1], row["tail"] + 1
     end = paths.queued[g]

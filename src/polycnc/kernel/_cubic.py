@@ -9,6 +9,7 @@ meets both with their directions. Its row of numbers:
     0..2    ways from the start to the first inner control point, one for each axis
     3..5    the same to the second
     6       e
+    7       what was taken of the motion after it, mm; 8 what of the one before had been taken at its start
 """
 
 from __future__ import annotations
@@ -18,7 +19,7 @@ import math
 from polycnc.kernel._bezier import Floats
 from polycnc.kernel._jit import compiled
 
-FIRST, SECOND, ENTRY = 0, 3, 6
+FIRST, SECOND, ENTRY, CUT_AFTER, TAKEN = 0, 3, 6, 7, 8
 
 
 @compiled

@@ -4,6 +4,8 @@ With BY_SHARE that is the corner beside a helix, or beside an arc that no other 
 motion into the corner slows down to rest with half of its acceleration, and the one out of it speeds up with half of
 its own so early that they pass the corner within the tolerance, which `free_overlaps` lets them leave. An axis has what
 one leaves for the other, and both keep to their half all along. The piece in which both move is an OVERLAP (`_cubic`).
+LinuxCNC finds how motions overlap as they come, when it knows what follows the second one, be it an arc that rounds its
+end or nothing at all: a free piece is found anew then, and the motion before it waits for that.
 
 Units: those of `_segments`.
 """
@@ -18,39 +20,37 @@ from polycnc.kernel._axis_limits import AxisLimits
 from polycnc.kernel._blend_arcs import may_be_rounded
 from polycnc.kernel._blend_speed import CUT, CUT_LINE
 from polycnc.kernel._corner_rules import BY_SHARE, step_share
-from polycnc.kernel._cubic import ENTRY, FIRST, SECOND
+from polycnc.kernel._cubic import TAKEN
 from polycnc.kernel._curve_limits import (
-    CENTRIPETAL_SHARE,
     LAST_ARC_SHARE,
     OVERLAP_BEND_SHARE,
     OVERLAP_SHARE,
     axes_allow,
     axis_use,
 )
-from polycnc.kernel._geometry import segment_point, segment_tangent
+from polycnc.kernel._geometry import segment_tangent
 from polycnc.kernel._jit import apart, compiled
 from polycnc.kernel._limits import SHARPEST, feed_in_force, segment_limits
+from polycnc.kernel._overlap_piece import Size, insert, join, part, size_of, taken_of_first
 from polycnc.kernel._path import SCRATCH_POINTS, Paths, slot
 from polycnc.kernel._segments import (
     ARC,
     CENTER_P,
     CENTER_Q,
-    LINE,
+    LAST,
     OVERLAP,
     OVERLAPS,
     RADIUS_END,
     RADIUS_START,
     RAPID,
-    RISE,
-    SWEEP_RAD,
     Floats,
     Segments,
-    set_common,
 )
 
 SHORTEST_MM = 1e-6
 MOST_TRIES = 16
 LEAST_ASIDE = 1e-3  # sine of half the turn; smaller ones leave the speed free
+KNOWN = 0.5  # of its length is a motion sure of whose corners are not known, as the last one's are not
 
 
 @apart
@@ -72,33 +72,53 @@ def overlap_corner(seg: Segments, paths: Paths, g: int, limits: AxisLimits) -> N
     p, q, r = _three_axes(seg, k, following, limits)
     if p < 0:
         return
+    work, n = paths.blend[g], seg.start.shape[1]
+    pair = work[SCRATCH_POINTS : SCRATCH_POINTS + 2 * n].reshape(2, n)
     flags = row["flags"]
     taken = 0.0  # by an overlap at its start; that of an arc is gone
-    if flags & OVERLAPS and paths.blend[g, CUT_LINE] == path["tail"] - 2:
-        taken = paths.blend[g, CUT]
+    if flags & OVERLAPS and work[CUT_LINE] == path["tail"] - 2:
+        taken = work[CUT]
     row["flags"] |= OVERLAPS
     after["flags"] |= OVERLAPS
-    time, leaving, entering, cut_after = _size(seg, paths, g, k, following, limits, taken)
-    if time * min(leaving, entering) < 2.0 * SHORTEST_MM:
+    size = (0.0, 0.0, 0.0, 0.0)
+    if not _is_passed(seg, k, following, limits, path, pair):
+        size = _size(seg, k, following, limits, path, pair, (taken, 0.0))
+    if not _is_worth(size):
         row["flags"] = flags
         after["flags"] &= ~OVERLAPS
         return
-    _insert(seg, paths, g, (p, q, r), time, (leaving, entering), cut_after)
+    slots = (k, following, slot(paths, g, path["tail"]))
+    insert(seg, slots, (p, q, r), size, taken, pair[0])
+    path["tail"] += 1
+    work[CUT], work[CUT_LINE] = size[3], path["tail"] - 1
+
+
+@apart
+@compiled
+def overlap_as_known(seg: Segments, paths: Paths, g: int, limits: AxisLimits, first: int, ready: int) -> None:
+    """Find the free overlaps from count `first` to `ready` anew: what follows their second motion is known now."""
+    path, work, n = paths.row[g], paths.blend[g], seg.start.shape[1]
+    pair = work[SCRATCH_POINTS : SCRATCH_POINTS + 2 * n].reshape(2, n)
+    for count in range(first + 1, ready if path["free_overlaps"] != 0 else first):
+        k, between, following = slot(paths, g, count - 1), slot(paths, g, count), slot(paths, g, count + 1)
+        if seg.row[between]["kind"] != OVERLAP:
+            continue
+        slots, old, beyond = (k, between, following), size_of(seg, between), slot(paths, g, count + 2)
+        goes_on = count + 2 < path["tail"] and seg.row[beyond]["kind"] == OVERLAP
+        part(seg, slots, old, pair[0])
+        taken = (float(seg.geo[between, TAKEN]), taken_of_first(size_of(seg, beyond)) if goes_on else 0.0)
+        size = _size(seg, k, following, limits, path, pair, taken)
+        if not _is_worth(size):
+            size = old
+        join(seg, slots, size, pair[0])
+        if goes_on:
+            seg.geo[beyond, TAKEN] = size[3]
 
 
 @compiled
-def _lie_in_a_plane(seg: Segments, k: int, following: int) -> bool:
-    """Tell whether no axis moves on either segment but the two of an arc; such corners have arcs or are stops."""
-    arc = k if seg.row[k]["kind"] == ARC else following
-    p, q = seg.plane[arc, 0], seg.plane[arc, 1]
-    for i in range(seg.start.shape[1]):
-        moves = seg.start[k, i] != seg.end[k, i] or seg.start[following, i] != seg.end[following, i]
-        if moves and i != p and i != q:
-            return False
-    other = seg.row[following]["kind"] == ARC and (
-        seg.plane[following, 0] != p or seg.plane[following, 1] != q
-    )
-    return not other
+def _is_worth(size: Size) -> bool:
+    """Tell whether both motions do a way together."""
+    return size[0] * min(size[1], size[2]) >= 2.0 * SHORTEST_MM
 
 
 @compiled
@@ -116,25 +136,32 @@ def _three_axes(seg: Segments, k: int, following: int, limits: AxisLimits) -> tu
 
 @compiled
 def _size(
-    seg: Segments, paths: Paths, g: int, k: int, following: int, limits: AxisLimits, taken: float
-) -> tuple[float, float, float, float]:
-    """Return how long two motions overlap, the speeds with which one begins to end and the other has begun, its way.
+    seg: Segments,
+    k: int,
+    following: int,
+    limits: AxisLimits,
+    path: np.void,
+    tangents: Floats,
+    taken: tuple[float, float],
+) -> Size:
+    """Return the size of the OVERLAP of two motions, of which others have taken at the far ends what `taken` says.
 
-    All 0 where they do not. The one that ends has its speed with the deviation that is allowed left to go, and the
-    other reaches its own by the end, with its acceleration at most.
+    The one that ends has its speed with the deviation that is allowed left to go, and the other reaches its own by the
+    end, with its acceleration at most.
     """
-    path, work = paths.row[g], paths.blend[g]
-    n = seg.start.shape[1]
-    tangents = work[SCRATCH_POINTS : SCRATCH_POINTS + 2 * n].reshape(2, n)
     row, after = seg.row[k], seg.row[following]
-    if _is_passed(seg, k, following, limits, path, tangents):
-        return 0.0, 0.0, 0.0, 0.0
     cap, accel = segment_limits(seg, k, limits, path, tangents[0], tangents[1])
     cap_after, accel_after = segment_limits(seg, following, limits, path, tangents[0], tangents[1])
-    length, length_after = row["length"] + taken, after["length"]
-    aside = _pulled_aside(seg, k, following, limits, tangents)
+    length, length_after = row["length"] + taken[0], after["length"] + taken[1]
+    alone = axes_allow(seg, following, limits, path, tangents[0], tangents[1])
+    aside = _pulled_aside(seg, k, following, limits, tangents, alone)
+    known = KNOWN if after["flags"] & LAST and path["free_overlaps"] != 0 else 1.0
     leaving, _ = _blend_speeds(
-        (cap, accel, length), (cap_after, accel_after, length_after), aside, path["tolerance_mm"], 1.0
+        (cap, accel, length),
+        (cap_after, accel_after, length_after),
+        aside,
+        path["tolerance_mm"],
+        (1.0, known),
     )
     if path["free_overlaps"] != 0:
         return _by_ramps(row, length, after, (accel, accel_after), leaving, cap_after)
@@ -168,23 +195,32 @@ def _by_ramps(
     accel: tuple[float, float],
     leaving: float,
     cap_after: float,
-) -> tuple[float, float, float, float]:
+) -> Size:
     """Return the same where the next motion begins with the ramp of the one before it, and goes as its own lets it."""
     time = leaving / accel[0]
-    cut_after = _gone(time, accel[1], cap_after)
+    entering, cut_after = _gone(time, accel[1], cap_after, after)
     room = min(0.5 * length, row["length"] - SHORTEST_MM) / (0.5 * leaving * time)
     room = min(room, (after["length"] - SHORTEST_MM) / cut_after)
     if room < 1.0:
         time *= math.sqrt(max(0.0, room))
-        cut_after = _gone(time, accel[1], cap_after)
-    return time, accel[0] * time, min(cap_after, accel[1] * time), cut_after
+        entering, cut_after = _gone(time, accel[1], cap_after, after)
+    return time, accel[0] * time, entering, cut_after
 
 
 @compiled
-def _gone(time_s: float, accel_mm_s2: float, speed_mm_s: float) -> float:
-    """Return how far a motion goes from rest in a time, with an acceleration and up to a speed."""
+def _gone(time_s: float, accel_mm_s2: float, speed_mm_s: float, row: np.void) -> tuple[float, float]:
+    """Return how fast a motion is a time after it began at rest, with an acceleration and up to a speed, and how far.
+
+    The last one comes to rest at its end.
+    """
     reached = min(speed_mm_s, accel_mm_s2 * time_s)
-    return reached * (time_s - 0.5 * reached / accel_mm_s2)
+    way = reached * (time_s - 0.5 * reached / accel_mm_s2)
+    if row["flags"] & LAST and row["length"] - way < 0.5 * reached * reached / accel_mm_s2:
+        top = min(speed_mm_s, math.sqrt(accel_mm_s2 * row["length"]))
+        left = row["length"] / top + top / accel_mm_s2 - time_s
+        reached = accel_mm_s2 * max(0.0, left)
+        way = row["length"] - 0.5 * reached * left
+    return reached, way
 
 
 @compiled
@@ -252,14 +288,14 @@ def _blend_speeds(
     after: tuple[float, float, float],
     aside: float,
     tolerance_mm: float,
-    known: float,
+    known: tuple[float, float],
 ) -> tuple[float, float]:
     """Return the speeds with which one motion begins to end and the next has begun.
 
-    `before` and `after` are speed, acceleration and length each, of which the part `known` is theirs for sure.
+    `before` and `after` are speed, acceleration and length each, of which the parts `known` are theirs for sure.
     """
-    fast = min(before[0], math.sqrt(before[1] * before[2] * known))
-    fast_after = min(after[0], math.sqrt(after[1] * after[2] * known))
+    fast = min(before[0], math.sqrt(before[1] * before[2] * known[0]))
+    fast_after = min(after[0], math.sqrt(after[1] * after[2] * known[1]))
     time = min(before[2] / fast, after[2] / fast_after, max(fast / before[1], fast_after / after[1]))
     leaving, entering = min(fast, time * before[1]), min(fast_after, time * after[1])
     if aside > LEAST_ASIDE and tolerance_mm < math.inf:
@@ -280,7 +316,7 @@ def _is_passed(
     top, accel = axes_allow(seg, k, limits, path, tangents[0], tangents[1])
     top_after, accel_after = axes_allow(seg, following, limits, path, tangents[0], tangents[1])
     cap, cap_after = min(top, feed_in_force(row, path)), min(top_after, feed_in_force(after, path))
-    aside = _pulled_aside(seg, k, following, limits, tangents)
+    aside = _pulled_aside(seg, k, following, limits, tangents, (top_after, accel_after))
     segment_tangent(seg, k, 1.0, tangents[0])
     segment_tangent(seg, following, 0.0, tangents[1])
     if _dot(tangents, limits) < math.cos(SHARPEST):
@@ -296,7 +332,7 @@ def _is_passed(
         (cap_after, part_after * accel_after, after["length"]),
         aside,
         path["tolerance_mm"],
-        0.5,
+        (KNOWN, KNOWN),
     )
     net = 0.25 * math.sqrt(max(0.0, 1.0 - aside * aside)) * (leaving + entering)
     return bool(min(cap, cap_after) * path["corner_share"] / share >= net)
@@ -310,10 +346,16 @@ def _part_for_sure(row: np.void, path: np.void) -> float:
 
 
 @compiled
-def _pulled_aside(seg: Segments, k: int, following: int, limits: AxisLimits, pulls: Floats) -> float:
-    """Return the sine of half the angle between where both motions accelerate to; `pulls` is scratch."""
-    _pull(seg, k, limits, 1.0, pulls[0])
-    _pull(seg, following, limits, 0.0, pulls[1])
+def _pulled_aside(
+    seg: Segments, k: int, following: int, limits: AxisLimits, pulls: Floats, alone: tuple[float, float]
+) -> float:
+    """Return the sine of half the angle between where both motions accelerate to; `pulls` is scratch.
+
+    `alone` is what the axes allow the second one, a speed and an acceleration.
+    """
+    _pull(seg, k, 0.0, 1.0, pulls[0])
+    speed = min(float(seg.row[following]["feed_mm_s"]), alone[0])
+    _pull(seg, following, 0.25 * speed * speed / (OVERLAP_SHARE * alone[1]), 0.0, pulls[1])
     return math.sqrt(max(0.0, 0.5 * (1.0 - _dot(pulls, limits))))
 
 
@@ -361,10 +403,10 @@ def _dot(vectors: Floats, limits: AxisLimits) -> float:
 
 
 @compiled
-def _pull(seg: Segments, k: int, limits: AxisLimits, at: float, out: Floats) -> None:
+def _pull(seg: Segments, k: int, aside_mm: float, at: float, out: Floats) -> None:
     """Write where segment `k` accelerates to at its start or its end to `out[n]`, as LinuxCNC takes it.
 
-    Along a line; along an arc in its plane, and at its start also to its centre, as at half of its feed.
+    Along a line; along an arc in its plane, and also to its centre, by as much as the radius is less than `aside_mm`.
     """
     segment_tangent(seg, k, at, out)
     if seg.row[k]["kind"] != ARC:
@@ -375,85 +417,8 @@ def _pull(seg: Segments, k: int, limits: AxisLimits, at: float, out: Floats) -> 
     for i in range(out.shape[0]):
         out[i] = 0.0
     out[p], out[q] = along_p / size, along_q / size
-    if at > 0.0:
-        return
     in_p, in_q = seg.geo[k, CENTER_P] - seg.start[k, p], seg.geo[k, CENTER_Q] - seg.start[k, q]
-    radius, accel = math.sqrt(in_p * in_p + in_q * in_q), min(limits.acceleration[p], limits.acceleration[q])
-    square = min(seg.row[k]["feed_mm_s"] ** 2, CENTRIPETAL_SHARE * accel * radius)
-    part = 0.25 * square / (OVERLAP_SHARE * accel * radius * radius)
+    part = aside_mm / (in_p * in_p + in_q * in_q)
     out[p], out[q] = out[p] + part * in_p, out[q] + part * in_q
     size = math.sqrt(out[p] * out[p] + out[q] * out[q])
     out[p], out[q] = out[p] / size, out[q] / size
-
-
-@compiled
-def _insert(
-    seg: Segments,
-    paths: Paths,
-    g: int,
-    axes: tuple[int, int, int],
-    time: float,
-    speeds: tuple[float, float],
-    cut_after: float,
-) -> None:
-    """Put an OVERLAP that takes `time`, with its speeds at both ends, between the last two segments of path `g`."""
-    path, work = paths.row[g], paths.blend[g]
-    k, between = slot(paths, g, path["tail"] - 2), slot(paths, g, path["tail"] - 1)
-    following = slot(paths, g, path["tail"])
-    n = seg.start.shape[1]
-    point = work[SCRATCH_POINTS : SCRATCH_POINTS + n]
-    cut, even = 0.5 * time * speeds[0], 0.5 * time * speeds[1]
-    _copy(seg, between, following)
-    _shorten(seg, k, cut, False, point)
-    _shorten(seg, following, cut_after, True, point)
-    tag = int(seg.row[following]["tag"])
-    set_common(seg, between, seg.end[k], seg.start[following], max(speeds[0], speeds[1]), OVERLAPS, tag)
-    seg.row[between]["kind"] = OVERLAP
-    seg.row[between]["length"] = cut + even
-    geo = seg.geo[between]
-    geo[ENTRY] = speeds[0] / (speeds[0] + speeds[1])
-    segment_tangent(seg, k, 1.0, point)
-    for j in range(3):
-        seg.plane[between, j] = axes[j]
-        geo[FIRST + j] = 2.0 / 3.0 * cut * point[axes[j]]
-    segment_tangent(seg, following, 0.0, point)
-    for j in range(3):
-        i = axes[j]
-        geo[SECOND + j] = seg.end[between, i] - seg.start[between, i] - 2.0 / 3.0 * even * point[i]
-    path["tail"] += 1
-    work[CUT], work[CUT_LINE] = cut_after, path["tail"] - 1
-
-
-@compiled
-def _copy(seg: Segments, k: int, to: int) -> None:
-    """Copy segment `k` to another slot."""
-    row, copy = seg.row[k], seg.row[to]
-    set_common(seg, to, seg.start[k], seg.end[k], row["feed_mm_s"], int(row["flags"]), int(row["tag"]))
-    copy["event"], copy["events"] = row["event"], row["events"]
-    copy["kind"], copy["length"], copy["end_speed"] = row["kind"], row["length"], row["end_speed"]
-    for j in range(3):
-        seg.plane[to, j] = seg.plane[k, j]
-    for j in range(RISE + 1):
-        seg.geo[to, j] = seg.geo[k, j]
-
-
-@compiled
-def _shorten(seg: Segments, k: int, cut: float, at_start: bool, point: Floats) -> None:
-    """Take `cut` off the start or the end of the line or arc `k`; `point` is scratch."""
-    row, geo = seg.row[k], seg.geo[k]
-    length = row["length"]
-    segment_point(seg, k, cut if at_start else length - cut, point)
-    for i in range(point.shape[0]):
-        if at_start:
-            seg.start[k, i] = point[i]
-        else:
-            seg.end[k, i] = point[i]
-    row["length"] = length - cut
-    if row["kind"] == LINE:
-        return
-    growth = (geo[RADIUS_END] - geo[RADIUS_START]) * cut / length
-    if at_start:
-        geo[RADIUS_START] += growth
-    else:
-        geo[RADIUS_END] -= growth
-    geo[SWEEP_RAD] *= 1.0 - cut / length

@@ -22,6 +22,7 @@ from polycnc.kernel._jit import compiled, entry
 from polycnc.kernel._limits import feed_in_force, least_accel, line_speed, overridden_rapid
 from polycnc.kernel._lookahead import limit_queue, plan_path
 from polycnc.kernel._merge import close_line, is_open
+from polycnc.kernel._overlap import overlap_as_known
 from polycnc.kernel._path import (
     FROM_S,
     GONE,
@@ -41,7 +42,7 @@ from polycnc.kernel._path import (
     slot,
 )
 from polycnc.kernel._ramps import ramps_at
-from polycnc.kernel._segments import ASKED, RAPID, STOP, WAIT, Segments, Table, set_wait
+from polycnc.kernel._segments import ASKED, OVERLAP, RAPID, STOP, WAIT, Segments, Table, set_wait
 
 
 @compiled
@@ -120,7 +121,10 @@ def frozen_until(seg: Segments, paths: Paths, g: int, dt: float) -> int:
 
 @compiled
 def _ready_count(seg: Segments, paths: Paths, g: int) -> int:
-    """Return the count up to which segments will not change: a line that may yet be rounded off or grow waits."""
+    """Return the count up to which segments will not change: a line that may yet be rounded off or grow waits.
+
+    So does a free overlap, and the motion before it, until it is known what follows the one after it.
+    """
     path = paths.row[g]
     tail = int(path["tail"])
     if path["limit"] <= tail:  # the path rests there, so nothing joins the last line nor rounds its end
@@ -129,7 +133,10 @@ def _ready_count(seg: Segments, paths: Paths, g: int) -> int:
         row = seg.row[slot(paths, g, tail - 1)]
         may_be_last = path["last_share"] > 0.0 and row["kind"] != WAIT and not row["flags"] & STOP
         if may_be_rounded(path, row) or may_be_last:
-            return max(tail - 2, int(path["prepared"])) if is_open(paths, g) else tail - 1
+            ready = tail - 2 if is_open(paths, g) else tail - 1
+            if path["free_overlaps"] != 0 and seg.row[slot(paths, g, ready - 1)]["kind"] == OVERLAP:
+                ready -= 2
+            return max(ready, int(path["prepared"]))
     return tail
 
 
@@ -185,6 +192,7 @@ def prepare_path(seg: Segments, paths: Paths, g: int, limits: AxisLimits, dt: fl
         path["closed"] = 1  # though the line has been appended anew
     head, first = int(path["head"]), int(path["prepared"])
     ready = _ready_count(seg, paths, g)
+    overlap_as_known(seg, paths, g, limits, first, ready)
     first_end = max(first - 1, head)
     goes_on = first_end == head and head < first < ready
     if goes_on and frozen_until(seg, paths, g, dt) > head:  # what is new has no limits yet
