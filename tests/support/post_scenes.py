@@ -212,12 +212,15 @@ def _along(run: MacroRun, rows: Rows, feed: Feed) -> str:
 
 
 def _at_once(run: MacroRun, rows: Rows, feed: Feed) -> str | None:
-    _along(run, rows[:1], feed)  # the first makes modal what is
+    run.keep(dict(zip(("F", "FEEDMODE"), feed, strict=True)))
+    if run.rows() is None:
+        _along(run, rows[:1], feed)  # the first makes modal what is
+        rows = rows[1:]
     steady = run.rows()
     if steady is None:
         return None
-    text, blocks, done = run.write_rows(steady, rows[1:], np.zeros(2, np.int64))
-    assert (text.count("\n"), done) == (blocks, 2)
+    text, blocks, done = run.write_rows(steady, rows, np.zeros(len(rows), np.int64))
+    assert (text.count("\n"), done) == (blocks, len(rows))
     return text
 
 
