@@ -26,7 +26,8 @@ SCENES = {
     "macro.line_is_block expr.case op.assign expr.undefined",
     "modes": "code.output code.star code.minus code.modal_state code.search_key code.combined init.key init.xyz "
     "init.value concept.machining_origin sec.g_code sec.m_code sec.function_var word.function_var word.X word.Y "
-    "word.Z word.F word.T expr.assign concept.multi_path if.statement seq.output expr.undefined block.empty",
+    "word.Z word.F word.T expr.assign concept.multi_path if.statement seq.output expr.undefined block.empty "
+    "macro.tool_change",
     "formats": "word.function_var sec.function_var sec.parameter sec.nc_code block.sequence_number word.X word.Y "
     "word.Z word.F word.T seq.output seq.option2 seq.suppress concept.machining_origin init.xyz order.sort "
     "expr.undefined block.empty",
