@@ -69,7 +69,7 @@ def flags(b: Bench) -> None:
         b.set(IF, 0, shiftmaster=0, sethome=value, homepos=3)
         b.step(30)
         b.MoveInTime(9, -21, 6, IF)
-        b.set(IF, 6, startsyn=value)
+        b.set(IF, 6, slaveabs=value, startsyn=value)
         b.TgvelInTime(7, ONE + 5, 7, IF)
         b.set(IF, 7, startsyn=value)
         b.step(14)
