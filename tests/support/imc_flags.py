@@ -259,7 +259,49 @@ def answers(b: Bench) -> None:
     b.step(1)
 
 
+def beyond(b: Bench) -> None:
+    """Ends faster than their segments, axes by the number of axes, targets that creep, events that are no number."""
+    n = b.card.axes
+    b.set(IF, segmap_x1=0, segmap_y1=1, segmap_z1=2, pathaxisnum1=3, pathacc1=0.75, startpath1=-1)
+    b.set(IF, segmap_x2=3, segmap_y2=n, pathaxisnum2=2, pathacc2=1.25, segtgvel2=4, startpath2=-1)
+    b.AddLineN(lib.PFIFOSegData.of(9, 8), P2)
+    data = lib.PFIFOSegData.of(40, 30, 12)
+    arc = lib.PFIFOSegData.of(60, 50, -8, center=(60, 30))
+    for end in (9 * ONE, -2 * ONE, 0):
+        b.AddLineNWithVel(lib.PFIFOSegInfo.of(4 * ONE, end, data), P1)
+        b.AddArcLineWithVel(lib.PFIFOSegInfo.of(3 * ONE, end, arc), P1)
+        b.AddArcWithVel(2 * ONE, end, 80, 30, 80, 50, 1, P1)
+        b.AddSpiralWithVel(5 * ONE, end, 60, 10, -15, 80, 10, 0, P1)
+        b.step(40)
+        b.set(IF, error=0, stopfilt=0)
+    b.set(IF, startpath1=0, startpath2=0)
+    b.set(IF, 3, error=0, mcstrack=-1, mcstgpos=20, mcsgo=-1, pcstrack=-1, pcstgpos=-20, pcsgo=-1)
+    for k in range(8):
+        b.step(3)
+        b.set(IF, 3, mcstgpos=21 + k, pcstgpos=-21 - k)
+    b.step(20)
+    for k in range(4):
+        b.set(IF, 3, mcstgpos=27 - k, pcstgpos=-27 + k)
+        b.step(4)
+    count = lib.EventInfo.of(
+        lib.CMD_ADD32i, src1=(address("user32b1"), 0), src2=1, dest=(address("user32b1"), 0)
+    )
+    b.InstallEvent([count] * 3, 3, IF)
+    for number in (1, 3, 127, 128, 129, 255, 32767, -1, 0):
+        b.step(2)
+        b.set(IF, events=number)
+    b.step(2)
+    for words in (1, 2, 3):
+        asked = [lib.WR_MUL_DES.of(address(name), 3, words) for name in ("mcspos", "user48b4", "curvel")]
+        for each in asked:
+            each.data[0:3] = [111, 222, 333]
+        b.GetMulParam(asked, 2)
+        b.answers.append(f"read: {[list(each.data) for each in asked]}")
+
+
 SCENES = {
+    "beyond": ("number_of_axes = 4\nready = true\n", beyond),
+    "answers_alone": ("number_of_axes = 1\nready = true\n", answers),
     "flags": (FLAGS_FILE, flags),
     "short": (SHORT_FILE, short),
     "settings": ("number_of_axes = 4\nready = true\n", settings),

@@ -1,0 +1,79 @@
+"""Scenes of the board: numbers of many digits, 0 and either sign in every register, and moves that share axes."""
+
+from __future__ import annotations
+
+from support.apci_bench import OF_AXES, WHOLE, WRITES, Bench
+
+SYSTEM = """
+[[axis]]
+jac = 700.0
+jvl = 40.0
+[[axis]]
+time_unit = "min"
+unit = "inch"
+jac = 9.0e5
+jvl = 900.0
+[[axis]]
+motor = "stepper"
+effradius = 25.0
+unit = "deg"
+"""
+NUMBERS = (0.1234567891, -0.7654321098, 0.0, 1.5, 98765.4321, 1e-7, -1e-100)
+WHOLES = (0x7FFFFFFF, -0x80000000, 0, 0x12345678, -1, 0x55AA55, 3)
+_MODES = {"wrModeReg", "wrnfrax"}
+
+
+def digits(b: Bench) -> None:
+    """Every register that the PC writes given numbers of many digits, 0, and what it may not have."""
+    for turn, (number, whole) in enumerate(zip(NUMBERS, WHOLES, strict=True)):
+        for k, name in enumerate(WRITES):
+            for an in range(3) if name in OF_AXES else ("",):
+                value: float = whole ^ k if name in WHOLE else number * (1.0 + k / 64)
+                if name not in _MODES:
+                    getattr(b, name)(*([] if an == "" else [an]), value)
+        b.step(5)
+        if turn == 3:
+            b.cl(0, 2)
+    b.ol(0, 2)
+    b.wrModeReg(0x7654321)
+    b.step(5)
+    b.wrnfrax(-3)
+    b.wrModeReg(-1)
+    b.step(5)
+    b.rs()
+    b.step(5)
+
+
+def joined(b: Bench) -> None:
+    """Queued moves whose axes are some of those of the move before, or more, or others, with look-ahead."""
+    b.cl(0, 1, 2)
+    for an, jump in enumerate((2.5, 30.0, 4.0)):
+        b.wrMDVel(an, jump)
+    b.wrModeReg(0x1)
+    speeds = (500.0, 20.0, 12.0)
+    for targets in (
+        {0: 0.75, 1: 0.25},
+        {0: 0.75},
+        {0: 0.5, 2: 0.25},
+        {2: 0.5},
+        {1: 0.25, 0: -0.5},
+        {1: -0.25, 0: 0.5, 2: 0.25},
+        {0: 0.25, 2: 0.125},
+    ):
+        b.smlr(targets, speeds)
+    b.ssms(0, 1, 2)
+    b.step(150)
+    b.mlr({0: 1.5, 1: 0.5}, (400.0, 15.0, 0.0))
+    b.js(1)
+    b.step(10)
+    b.mlr({0: 1.5, 1: 0.5}, (400.0, 15.0, 0.0))
+    b.step(20)
+    b.js(0)
+    b.step(30)
+    b.mlr({0: 0.5, 1: 0.5}, (400.0, 15.0, 0.0))
+    b.step(1, 1)
+    b.ra(0)
+    b.step(20)
+
+
+SCENES = {"digits": (SYSTEM, digits), "joined": (SYSTEM, joined)}
