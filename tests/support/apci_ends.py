@@ -76,4 +76,53 @@ def joined(b: Bench) -> None:
     b.step(20)
 
 
-SCENES = {"digits": (SYSTEM, digits), "joined": (SYSTEM, joined)}
+TERMINALS = "[[axis]]\n[[axis]]\n[inputs]\n" + "".join(
+    f"{number} = {{ inverted = {'true' if number % 3 else 'false'} }}\n" for number in range(1, 17)
+)
+
+
+def terminals(b: Bench) -> None:
+    """Each input alone, inverted or not; each output set and reset by every axis with numbers of any size."""
+    b.step(5)
+    for number in range(1, 17):
+        b.board.set_input(number, True)
+        b.board.advance(1)
+        b.tell(*(b.rddigib(an, number + beside) for an in (0, 1) for beside in (-1, 0, 1)))
+    b.step(5)
+    for number in range(1, 17, 2):
+        b.board.set_input(number, False)
+    b.step(5)
+    for value in (2, 0, -1, 0x100, 0, 1, -0x80000000):
+        for number in range(10):
+            b.wrdigob(number % 2, number, value)
+            b.tell(*(b.rddigob(an, number + beside) for an in (0, 1) for beside in (-1, 0, 1)))
+    b.step(5)
+    b.rs()
+    b.step(5)
+
+
+def modes(b: Bench) -> None:
+    """Each bit of the mode register alone, while a path is stopped, ends at speed, waits and is overridden."""
+    b.wrtrac(150.0)
+    b.wrtrovr(0.75)
+    b.cl(0, 1)
+    for bit in range(32):
+        b.wrModeReg(1 << bit)
+        b.mlr({0: 0.75, 1: -0.5}, (400.0, 20.0, 0.0))
+        b.step(10, 10)
+        b.utrovr(0)
+        b.ms(0, 1)
+        b.smlr({0: -0.25}, (400.0, 20.0, 5.0))
+        b.ssf(0, 1003, 200.0)
+        b.ssms(0)
+        b.step(30, 30)
+        b.ra(0, 1)
+        b.cl(0, 1)
+
+
+SCENES = {
+    "terminals": (TERMINALS, terminals),
+    "modes": ("[[axis]]\n[[axis]]\n", modes),
+    "digits": (SYSTEM, digits),
+    "joined": (SYSTEM, joined),
+}
