@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from polycnc.controllers.apci import pcap
 from support.apci_bench import OF_AXES, WHOLE, WRITES, Bench
 
 SYSTEM = """
@@ -120,7 +121,24 @@ def modes(b: Bench) -> None:
         b.cl(0, 1)
 
 
+def handlers(b: Bench) -> None:
+    """Lines written by a program and by the handler of an event, which stop the task or do not."""
+    for mode in (0, 1 << 26):
+        b.wrModeReg(mode)
+        b.program(
+            "EVENT e ON CI2 > 30; BEGIN CI3 := CI3 + 1; WRITE('in '); WRITELN(CI3); CI4 := CI4 + 1; CI2 := 0 END;\n"
+            "BEGIN WHILE TRUE DO BEGIN CI2 := CI2 + 1; IF CI2 = 20 THEN WRITELN('b') END END.",
+            1,
+        )
+        for _ in range(5):
+            b.step(3, 3)
+            b.tell(*(pcap.gettskinfo(1)), *map(ord, pcap.gettskstr(1)[1]))
+            b.contcnct(1)
+        b.stopcnct(1)
+
+
 SCENES = {
+    "handlers": ("[[axis]]\n", handlers),
     "terminals": (TERMINALS, terminals),
     "modes": ("[[axis]]\n[[axis]]\n", modes),
     "digits": (SYSTEM, digits),
