@@ -137,7 +137,44 @@ def handlers(b: Bench) -> None:
         b.stopcnct(1)
 
 
+LIMITS = "".join(
+    f'[[axis]]\nsll = -0.5\nslr = 0.75\nsoft_left = "{left}"\nsoft_right = "{right}"\nipw = 0.125\nmpe = 0.25\n'
+    for left, right in (("TOM", "SMA"), ("SMA", "SMD"), ("SMD", "TOM"))
+)
+
+
+def exactly(b: Bench) -> None:
+    """Axes that rest at their limits and not beyond them, then one step beyond, and limits that come to them."""
+    b.cl(0, 1, 2)
+    for an in range(3):
+        b.shp(an, tp=0.0)
+    for end in (0.75, -0.5, 0.0):
+        b.ja(dict.fromkeys(range(3), end))
+        b.step(100, 20)
+        for an in range(3):
+            b.wrdp(an, end * 1.0000001)
+        b.step(5)
+    for an, place in enumerate((0.0, 0.125, -0.25)):
+        b.ja({an: place})
+        b.step(20)
+        b.wrsll(an, place)
+        b.wrslr(an, place)
+        b.step(5)
+        b.jr({an: 0.5})
+        b.step(10)
+        b.jr({an: -0.5})
+        b.step(10)
+    b.step(40)
+    for factor in (1.0, 0.999999999, 1.000000001):  # a window that is just as wide as the error
+        for an in range(3):
+            error = abs(pcap.rdPosErr(an)) * factor
+            b.wrmpe(an, error)
+            b.wripw(an, error)
+        b.step(5)
+
+
 SCENES = {
+    "exactly": (LIMITS, exactly),
     "handlers": ("[[axis]]\n", handlers),
     "terminals": (TERMINALS, terminals),
     "modes": ("[[axis]]\n[[axis]]\n", modes),
