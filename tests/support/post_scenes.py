@@ -6,7 +6,7 @@ encoding, all else are parameters), and after `  > ` the lines; `---` begins the
 written under it:
 
     |block|     what the macros write, called one after the other, the last one as LINEAR
-    +|block|    what the last one writes for two more moves with another feed: one by one, along a path, at once alike
+    +|block|    what the last one writes for three more moves with another feed: one by one, along a path, at once alike
     =|block|    what shows the state that they leave: STOP of the control file
     ! line      an error, as a user reads it
 """
@@ -40,7 +40,7 @@ RECORDED = Path(__file__).resolve().parents[1] / "golden" / "post" / "scenes"
 _CODECS = {"utf-8": "utf-8", "ascii": "ascii", "shift-jis": "cp932"}
 _MACROS = ("PATH_START", "RAPID", "PATH_END", "LINEAR")
 _ROW = ("X", "Y", "Z", "STARTX", "STARTY", "STARTZ")
-_STEPS = np.array([[1.25, -2.5, 0.0], [1.25, -2.5, 0.75]])
+_STEPS = np.array([[1.25, -2.5, 0.0], [1.25, -2.5, 0.75], [-30.5, 0.0625, 0.75]])
 _OUTPUT = ("  |", "  +", "  =", "  !", "  .")
 
 Rows = npt.NDArray[np.float64]
@@ -212,12 +212,15 @@ def _along(run: MacroRun, rows: Rows, feed: Feed) -> str:
 
 
 def _at_once(run: MacroRun, rows: Rows, feed: Feed) -> str | None:
-    _along(run, rows[:1], feed)  # the first makes modal what is
+    run.keep(dict(zip(("F", "FEEDMODE"), feed, strict=True)))
+    if run.rows() is None:
+        _along(run, rows[:1], feed)  # the first makes modal what is
+        rows = rows[1:]
     steady = run.rows()
     if steady is None:
         return None
-    text, blocks, done = run.write_rows(steady, rows[1:], np.zeros(1, np.int64))
-    assert (text.count("\n"), done) == (blocks, 1)
+    text, blocks, done = run.write_rows(steady, rows, np.zeros(len(rows), np.int64))
+    assert (text.count("\n"), done) == (blocks, len(rows))
     return text
 
 

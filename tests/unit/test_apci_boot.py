@@ -449,7 +449,7 @@ def test_an_environment_string_replaces_its_name(folder: Path) -> None:
     assert application.get_env_str(env) == 4
     assert env.text == "4711"
     assert env.pack()[:5] == b"4711\0"
-    for name in ("Empty", "Unknown", "serialnumber"):
+    for name in ("Empty", "Unknown", "serialnumber", " SerialNumber", "SerialNumber ", "SerialNumbe", ""):
         env.text = name
         assert application.get_env_str(env) == 0
         assert env.text == ""

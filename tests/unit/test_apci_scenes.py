@@ -18,6 +18,7 @@ from polycnc.controllers.apci import ErrorReg, pcap
 from polycnc.controllers.apci.sap._commands import AXIS_QUALIFIERS, SYSTEM_VARIABLES
 from support.apci_bench import OF_AXES, WHOLE, WRITES, Bench, difference
 from support.apci_conditions import CONDITIONS
+from support.apci_ends import SCENES as ENDS
 from support.apci_mixture import MIXED, Mixture
 from support.apci_pc import near
 from support.apci_walk import OTHER_UNITS, Walk
@@ -819,7 +820,7 @@ for seed in (1, 2, 3, 4):
     SCENES[f"mixed{seed}"] = (MIXED, partial(mix, seed))
 
 
-SCENES |= CONDITIONS
+SCENES |= CONDITIONS | ENDS
 
 
 def walk(seed: int, b: Bench) -> None:

@@ -18,6 +18,7 @@ from polycnc.conformance import State, load_conformance
 from polycnc.controllers.imc import imclib as lib
 from polycnc.controllers.imc.core._parameters import PARAMETERS, address
 from support.imc_bench import Bench
+from support.imc_flags import SCENES as FLAGS
 from support.imc_walk import CARD_FILE, OTHERWISE, walk
 from support.imc_wander import WANDER_FILE, wander
 
@@ -602,13 +603,15 @@ for number in range(1, 5):
     SCENES[f"walk{number}"] = ("ready = true\n" + system, partial(walk, seed=number, acts=400))
 for number in (1, 2):
     SCENES[f"wander{number}"] = ("ready = true\n" + WANDER_FILE, partial(wander, seed=number, acts=500))
+SCENES |= FLAGS
 
 
 # What the scenes show of the manual: all of it but for cards on a network, C types and what no card does.
 ELSEWHERE = re.compile(
-    r"imc\.(IMC_(FindNetCard|Open\w*|Close)|option\.\w+|status\.(?!IMC_OK|IMC_OUT_OF_RANGE)\w+|type\.(IMC\w*|__int64)|concept\.rbfifo"
-    r"|struct\.NIC_INFO|file\.\w+|const\.(openMode|AXISNUM|limits)|concept\.library"
-    r"|param\.(eventid|eventbase|out1|out2|waitfilt|waitequ|encsctr|aiod|stepmod|dirtime|steptime|clrififo|fixvel|group_[b-m]))"
+    r"imc\.(IMC_(FindNetCard|Open\w*|Close)|option\.\w+|type\.(IMC\w*|__int64)|concept\.rbfifo"
+    r"|status\.(?!IMC_(OK|OUT_OF_RANGE|INVALID_(PARAM|AXIS|FIFO)|FIFO_FULL|PARAM_READ_ONLY)$)\w+"
+    r"|struct\.NIC_INFO|file\.\w+|const\.(openMode|limits)|concept\.library"
+    r"|param\.clrififo)"
 )
 CONFORMANCE = load_conformance()
 ROWS = [
