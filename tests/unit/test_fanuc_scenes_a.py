@@ -21,6 +21,8 @@ from polycnc.controllers.fanuc import fwlib
 from support import fanuc_scenes_a_axes as axes
 from support import fanuc_scenes_a_data as data
 from support import fanuc_scenes_a_macros as macros
+from support import fanuc_scenes_a_mixed as mixed
+from support import fanuc_scenes_a_products as products
 from support import fanuc_scenes_a_programs as programs
 from support import fanuc_scenes_a_walk as walk
 from support import fanuc_scenes_a_wire as wire
@@ -46,6 +48,19 @@ TRANSFERS = (
     r"(example\.)?cnc_(download|dwnstart|dwnend|upstart|upload|upend)(_format)?(\.err\..*)?|format\.(download|upload)|LF|PERCENT|MAX_RBUF"
     r"|concept\.((down|up)load_session|tv_check|duplicate_program|program_number_range|memory_accounting|no_nul_termination)"
     r"|range\.download_number|(struct\.)?ODBUP(\..*)?|ncparam\.(0000_0|3201_[26])"
+)
+
+MIXED = (
+    rf"(example\.)?cnc_({AXES}|{PROGRAMS}|{PARAMETERS}|{MACROS}|{OFFSETS})(\.err\.(?!EW_RESET).*)?|{CODES}|mode\..*|units\..*|paramtype\..*"
+    rf"|(struct\.)?({STRUCTURES})(\..*)?|enum\..*|option\..*|range\.(?!node).*|MAX_AXIS|ALL_AXES|format\..*"
+    r"|concept\.(?!function_index|header|c_types|handle_lifecycle|truncation).*"
+)
+PRODUCTS = (
+    rf"cnc_({OFFSETS}|{MACROS}|{PARAMETERS}|rdprogdir|rdproginfo|upstart|upload|upend|search|seqsrch|wrmdipntr|wrmdiprog|rewind|download)"
+    r"(\.err\.EW_(LENGTH|NUMBER|ATTRIB|DATA|NOOPT|PROT|MODE|REJECT))?|range\.(download_number|mdi_length)|ALL_AXES"
+    r"|EW_(LENGTH|NUMBER|ATTRIB|DATA|PROT|MODE)|enum\.(param_axis|offset_type|rdprog.*|macro_type)\..*"
+    r"|concept\.(length_argument|axis_param_rule|macro_local_scope|macro_out_of_range|setting_subset|program_number_range|param_record_stream)"
+    r"|IODBMR\.(datano_.|dummy|data\..*)|IODBTO\..*|IODBPSD\.(datano|type)"
 )
 
 SCENES: dict[str, tuple[Callable[[Bench], None], str]] = {
@@ -133,6 +148,8 @@ SCENES: dict[str, tuple[Callable[[Bench], None], str]] = {
         r"|concept\.(option_none|mode_matrix|macro_local_scope|axis_number)|option\.param_write|MAX_AXIS|ALL_AXES"
         r"|EW_(LENGTH|NUMBER|ATTRIB|DATA|PROT|NOOPT)",
     ),
+    "mixed": (mixed.mixed, MIXED),
+    "products": (products.products, PRODUCTS),
     "handles": (
         macros.handles,
         r"concept\.power_mate_d_limit|EW_(?!NOPMC).*|cnc_(allclibhndl2?|freelibhndl)|concept\.(handle_lifecycle|return_convention|upload_session|download_session)|range\.node"
