@@ -83,7 +83,7 @@ def parameter_calls(m: int, most: int) -> Calls:
         packed(1010, 0, "b", 3),
         packed(6080, 0, "b", 60) + packed(6711, 0, "i", 5), packed(6711, 0, "i", 9)[:-1], packed(1320, 0, "i", 1),
         packed(21, 0, "b", 1), b"",
-        packed(20, 0, "b", 99),
+        packed(20, 0, "b", 99), packed(12, 0, "b", 1), packed(6711, 1, "i", 1), packed(8010, 1, "b", 1),
     ]  # fmt: skip
     for name in ("wrparas", "wrsets"):
         yield name, [(len(record), record) for record in records]
@@ -197,8 +197,8 @@ def data_calls(count: int) -> Calls:
 
 
 def program_calls() -> Calls:
-    """Yield functions about programs."""
-    for name in ("actf", "rdprgnum", "rdseqnum", "rdmdipntr", "upend", "dwnend"):
+    """Yield functions about programs: those that read first, those that take most away last."""
+    for name in ("actf", "rdprgnum", "rdseqnum", "rdmdipntr"):
         yield name, [()]
     yield "rdexecprog", [(1,), (9,), (60,), (0,)]
     yield (
@@ -207,8 +207,6 @@ def program_calls() -> Calls:
         + [(3, 1, 2, 9), (0, 0, 5, 9), (1, 9, 8, 9), (2, 1, 10000, 9), (0, 1, 9, 0)],
     )
     yield "rdproginfo", [(0, 12), (1, 31), (1, 32), (0, 31), (1, 12), (2, 12), (2, 13)]
-    yield "seqsrch", [(30,), (44,), (10,), (0,), (31,), (-1,)]
-    yield "rewind", [()]
     texts = [
         stream("O1", "N7G4", "M30"),
         stream("O1", "G4", "G4X1.", "M3"),
@@ -217,20 +215,27 @@ def program_calls() -> Calls:
         stream("O1"),
         b"\nO1\nM30\n",
     ]
-    yield "wrmdiprog", [(len(data), data) for data in texts] + [(0, texts[0]), (200, texts[0] + b" " * 200)]
     yield "wrmdipntr", [(0,), (1,), (2,), (3,), (-1,)]
-    yield "upstart", [(8,), (9001,), (0,), (99,), (7,), (-7,)]
-    yield "upload", [(1,), (7,), (99,), (0,)]
-    yield "dwnstart", [()]
+    yield "wrmdiprog", [(len(data), data) for data in texts] + [(0, texts[0]), (200, texts[0] + b" " * 200)]
+    yield "wrmdipntr", [(0,), (1,), (2,), (-1,)]
+    yield "upload", [(1,), (7,), (0,)]
+    yield "upstart", [(8,), (9001,), (0,), (99,), (-7,)]
+    yield "upload", [(0,), (7,), (99,)]
+    yield "upend", [()]
+    yield "upload", [(7,)]
     sent = [
-        b"(D)\nM30\n%", stream("O12", "G1X1.", "M30"), stream("O8", "M30"), stream("O9001", "M99"),
-        stream("O8500", "M99"), stream("O7", "M99"), b"\nO13\nG!\n%",
-        stream("O77", "G01", "M30"), b"", b"\nO14\nM99",
+        b"", b"(D)\nM30\n%", b"\nO13\nG!\n%", stream("O8", "M30"), stream("O9001", "M99"), stream("O8500", "M99"),
+        stream("O7", "M99"), stream("O77", "G01", "M30"), stream("O12", "G1X1.", "M30"), b"\nO14\nM99",
     ]  # fmt: skip
-    yield (
-        "download",
-        [(data, len(data)) for data in sent] + [(b"\n" * 300, 257), (b"\n" * 300, 256), (b"\n", 2)],
-    )
+    for data in (b"\n", *sent):
+        yield "download", [(b"\n" * 300, 257), (data, 0), (b"", 1)] if data == b"\n" else [(data, len(data))]
+        yield "dwnend", [()]
+        yield "dwnstart", [()]
+    yield "download", [(b"\n" * 300, 256), (b"\n", 2)]
+    yield "search", [(8,), (9001,), (0,), (99,), (10000,)]
+    yield "dwnend", [()]
+    yield "seqsrch", [(30,), (44,), (10,), (0,), (31,), (-1,)]
+    yield "rewind", [()]
     yield "search", [(8,), (7,), (9001,), (0,), (99,), (10000,)]
-    yield "delete", [(8,), (9001,), (8500,), (7,), (11,), (0,), (99,)]
+    yield "delete", [(9001,), (8500,), (7,), (0,), (99,), (11,)]
     yield "delall", [()]

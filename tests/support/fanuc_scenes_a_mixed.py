@@ -25,8 +25,12 @@ from support.fanuc_scenes_a_wire import Cable
 from support.power_mate import psd
 
 Act = Callable[[Bench], object]
-ROWS = 64
+ROWS = 84
 TRIES = 12
+LETTERS = {
+    "OK": "O", "LEN": "L", "NUM": "N", "ATTR": "A", "DATA": "D", "BUSY": "B", "FUNC": "F", "PROT": "P", "OVRFL": "V",
+    "MODE": "M", "REJ": "J", "NOOPT": "T", "RESET": "R",
+}  # fmt: skip
 
 # ---------------------------------------------------------------------- factors
 
@@ -39,6 +43,7 @@ CONTROLS: dict[str, dict[str, Any]] = {
     "H, IS-A, Y rotary": {"increment": "IS-A", "rotary": (2,), "offsets": 32},
     "H, inch machine": {"inch_output": True},
     "H without options": {"options": ()},
+    "H, full of programs": {"most_programs": 7},
     "H, four axes, inch input, macros alone": {"axes": 4, "inch_input": True, "options": ("custom_macro",)},
 }
 
@@ -76,7 +81,7 @@ def _jog(b: Bench) -> None:
 
 def _mdi(b: Bench, *, start: bool) -> None:
     b.device.select_mode("MDI")
-    b.device.mdi.put(stream("O1", "N3G4P9.", "N4M98P8", "M30"))
+    b.device.mdi.put(stream("O01", "N3G4P9.", "N4M98P8", "M30"))
     if start:
         b.device.cycle_start()
         b.device.advance(40)
@@ -107,13 +112,14 @@ FACTORS: dict[str, dict[str, Act]] = {
                 (3210, 321),
             )
         },
-        "options off": lambda b: setattr(b.device.state, "parameters_writable", False),
+        "parameters not writable": lambda b: setattr(b.device.state, "parameters_writable", False),
     },
     "programs": {
         "": _nothing,
         "none": lambda b: (b.device.select_mode("EDIT"), b.code("cnc_delall"), b.device.select_mode("MEM")),
         "O9001 selected": lambda b: b.device.select_program(9001),
         "none selected": lambda b: b.device.programs.unselect(),
+        "N30 sought": lambda b: b.code("cnc_seqsrch", 30),
     },
     "upload": {
         "": _nothing,
@@ -159,7 +165,7 @@ FACTORS: dict[str, dict[str, Act]] = {
         "": _nothing,
         **{
             f"alarm {number}": partial(lambda n, b: b.device.raise_alarm(n), number)
-            for number in (0, 10, 101, 1007)
+            for number in (0, 10, 100, 101, 300, 500, 700, 1007, 5010)
         },
         "alarm 417 of the last axis": lambda b: b.device.raise_alarm(417, axis=b.device.axes),
         "emergency stop": lambda b: b.device.emergency_stop(),
@@ -173,11 +179,7 @@ FACTORS: dict[str, dict[str, Act]] = {
     },
     "mode": {
         "": _nothing,
-        **{
-            mode.label: partial(lambda m, b: b.device.select_mode(m), mode)
-            for mode in PowerMateMode
-            if mode is not PowerMateMode.NONE
-        },
+        **{mode.label: partial(lambda m, b: b.device.select_mode(m), mode) for mode in PowerMateMode},
     },
     "last": {
         "": _nothing,
@@ -203,18 +205,30 @@ def covering(levels: Sequence[int], rows: int, draw: random.Random) -> list[tupl
     return made
 
 
-def _drawn(b: Bench, draw: random.Random) -> Iterator[tuple[str, tuple[Any, ...]]]:
-    """Yield two calls of each function, one of those that change much."""
+def _calls(b: Bench) -> list[tuple[str, list[tuple[Any, ...]]]]:
     m, most = b.device.axes, b.device.max_axis
-    for name, given in (
-        *axes_calls(m, most), *parameter_calls(m, most), *data_calls(b.device.tool_offsets.count),
-        *program_calls(),
-    ):  # fmt: skip
-        for chosen in draw.sample(
-            given, min(len(given), 1 if name in ("delall", "delete", "download") else 2)
-        ):
-            if name != "delall" or draw.random() < 0.5:
+    data = data_calls(b.device.tool_offsets.count)
+    return [*program_calls(), *axes_calls(m, most), *data, *parameter_calls(m, most)]
+
+
+def _drawn(b: Bench, draw: random.Random) -> Iterator[tuple[str, tuple[Any, ...]]]:
+    """Yield a call or two of each function, none of those that take programs away."""
+    for name, given in _calls(b):
+        if name not in ("delall", "delete", "dwnend", "upend", "download", "wrparam"):
+            for chosen in draw.sample(given, min(len(given), 1 if name.startswith("rd") else 2)):
                 yield name, chosen
+
+
+def _every(b: Bench) -> None:
+    """Write down the codes of all calls: O, or the first letter or two of what refuses."""
+    told: list[str] = []
+    for name, given in _calls(b):
+        codes = "".join(LETTERS.get(code, code) for code in (b.cell(f"cnc_{name}", *each) for each in given))
+        if told and told[-1].startswith(f"{name} "):
+            told[-1] += f" {codes}"
+        else:
+            told.append(f"{name} {codes}")
+    b.say(f"codes: {', '.join(told)}")
 
 
 # ---------------------------------------------------------------------- the scene
@@ -239,6 +253,7 @@ def mixed(b: Bench) -> None:
         b.look()
         _far(b, draw)
         _answers(b, [*_drawn(b, draw)])
+        _every(b)
         device.advance(40)
         b.look(data=True)
 
