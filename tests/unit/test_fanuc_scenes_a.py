@@ -22,6 +22,7 @@ from support import fanuc_scenes_a_axes as axes
 from support import fanuc_scenes_a_data as data
 from support import fanuc_scenes_a_macros as macros
 from support import fanuc_scenes_a_mixed as mixed
+from support import fanuc_scenes_a_more as more
 from support import fanuc_scenes_a_products as products
 from support import fanuc_scenes_a_programs as programs
 from support import fanuc_scenes_a_walk as walk
@@ -150,6 +151,12 @@ SCENES: dict[str, tuple[Callable[[Bench], None], str]] = {
     ),
     "mixed": (mixed.mixed, MIXED),
     "products": (products.products, PRODUCTS),
+    "elsewhere": (
+        more.elsewhere,
+        r"ncparam\.(0000_0|132[01]|608.)|units\..*|ODBDY\.alarm(\.bit[34])?|concept\.(tv_check|tool_offset_memory|position_contents)"
+        r"|cnc_(absolute|machine|rddynamic|rdmacror|rdtofs|wrtofs|wrparam|download|dwnend|wrmdiprog)(\.err\.EW_DATA)?|EW_(DATA|NOOPT)"
+        r"|cnc_wrparam\.err\.EW_NOOPT|option\.param_write|IODBMR\.data\..*|enum\.axis\.ALL_AXES|ALL_AXES|MAX_AXIS",
+    ),
     "handles": (
         macros.handles,
         r"concept\.power_mate_d_limit|EW_(?!NOPMC).*|cnc_(allclibhndl2?|freelibhndl)|concept\.(handle_lifecycle|return_convention|upload_session|download_session)|range\.node"
