@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 from polycnc.controllers.fanuc import PowerMate
 from polycnc.controllers.fanuc.fwlib import EW
 from support.fanuc_scenes_a import Bench, numbers, registered, stream
 from support.power_mate import psd
 
-UNITS = {
+UNITS: dict[str, dict[str, Any]] = {
     "IS-B, inch machine": {"inch_output": True},
     "IS-B, inch input": {"inch_input": True},
     "IS-A": {"increment": "IS-A"},
