@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from typing import Any
 
-from polycnc.controllers.fanuc import PowerMate
+from polycnc.controllers.fanuc import PowerMate, fwlib
 from polycnc.controllers.fanuc.fwlib import EW
-from support.fanuc_scenes_a import Bench, numbers, registered, stream
+from support.fanuc_scenes_a import Bench, numbers, registered, short, stream
 from support.power_mate import psd
 
 UNITS: dict[str, dict[str, Any]] = {
@@ -14,6 +14,7 @@ UNITS: dict[str, dict[str, Any]] = {
     "IS-B, inch input": {"inch_input": True},
     "IS-A": {"increment": "IS-A"},
     "D, IS-C, inch machine": {"model": "D", "increment": "IS-C", "inch_output": True},
+    "D, IS-C, the second rotary": {"model": "D", "increment": "IS-C", "rotary": (2,)},
     "six axes, the last rotary, inch machine": {"axes": 6, "rotary": (6,), "inch_output": True},
 }
 
@@ -30,6 +31,8 @@ def elsewhere(b: Bench) -> None:
     _macro_calls(b)
     _offsets(b)
     _parity(b)
+    _streams(b)
+    _freed(b)
 
 
 def _limits(b: Bench) -> None:
@@ -171,3 +174,88 @@ def _parity(b: Bench) -> None:
             cells.append(f"{block!r} {_sent(b, data)}")
             b.remove(77)
         b.say(f"0000 = {tv}, 0100 = {comments}: {', '.join(cells)}")
+
+
+def _streams(b: Bench) -> None:
+    b.title("several programs in a stream: which is wrong, the same again later, with 3201 = 64, 68 and 0")
+    for numbers_sent in (
+        (5, 6, 5), (5, 6, 6), (5, 5, 6), (5, 7, 6), (5, 6, 7), (5, 8, 6), (8, 5, 6), (5, 8500, 6), (5, 6, 9001),
+        (5, 6, 11), (10000, 5, 6),
+        (5, 0, 6), (5, 6, 8, 5),
+    ):  # fmt: skip
+        cells = []
+        for value in (64, 68, 0):
+            device = b.control(characters=90)
+            registered(device, O7=";M30", O8=";G1;M30")
+            device.select_program(7)
+            for number, each in ((3201, value), (3202, 17)):
+                b.code("cnc_wrparam", 5, psd(number, 0, cdata=each))
+            data = stream(
+                *(part for number in numbers_sent for part in (f"O{number}", f"G{number % 90}", "M30"))
+            )
+            codes = [b.cell("cnc_dwnstart")]
+            codes += [
+                b.cell("cnc_download", data[at : at + 20], len(data[at : at + 20]))
+                for at in range(0, len(data), 20)
+            ]
+            codes.append(b.cell("cnc_dwnend"))
+            listed = b.get("cnc_rdprogdir", 2, 1, 9999, 99).prg_data.decode()
+            cells.append(f"{' '.join(codes)} {listed}")
+        b.say(f"{' '.join(map(str, numbers_sent))}: {' | '.join(cells)}")
+
+
+def _freed(b: Bench) -> None:
+    b.title("a handle that is freed: what stays of its transfers, and of another's")
+    for words in (
+        "download",
+        "half",
+        "wrong",
+        "stopped",
+        "reset",
+        "MDI",
+        "alarm 101",
+        "key",
+        "other",
+        "other, stopped",
+        "comparison",
+        "upload",
+        "form",
+    ):
+        device = b.control()
+        registered(device, O7=";M30")
+        _, other = fwlib.cnc_allclibhndl()
+        if words.startswith("other"):
+            fwlib.cnc_dwnstart(other)
+        elif words == "comparison":
+            device.start_compare()
+        elif words == "upload":
+            b.code("cnc_upstart", 7)
+        elif words == "form":
+            b.code("cnc_setmactype", 1)
+        else:
+            b.code("cnc_dwnstart")
+        if words in ("half", "wrong"):
+            b.code(
+                "cnc_download",
+                b"\nO9\nG!\n" if words == "wrong" else b"\nO9\nG1",
+                7 if words == "wrong" else 6,
+            )
+        if "stopped" in words:
+            device.feed_hold()
+        elif words == "reset":
+            device.reset()
+        elif words == "MDI":
+            device.select_mode("MDI")
+        elif words == "alarm 101":
+            device.raise_alarm(101)
+        elif words == "key":
+            device.protect_key(True)
+        codes = [short(fwlib.cnc_freelibhndl(b.handle)), short(fwlib.cnc_freelibhndl(b.handle))]
+        codes += [short(fwlib.cnc_actf(b.handle)[0]), short(fwlib.cnc_actf(other)[0])]
+        codes += [
+            short(fwlib.cnc_download(other, b"\n", 1)),
+            short(fwlib.cnc_dwnend(other)),
+            short(fwlib.cnc_dwnstart(other)),
+        ]
+        codes += [short(fwlib.cnc_upstart(other, 7)), str(fwlib.cnc_getmactype(other)[1])]
+        b.say(f"{words}: {' '.join(codes)}, {'a transfer' if device.transfer else 'none'}")
