@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any
 
-from polycnc.controllers.fanuc import PowerMate, fwlib
+from polycnc.controllers.fanuc import PowerMate, PowerMateMode, fwlib
 from polycnc.controllers.fanuc.fwlib import EW
 from support.fanuc_scenes_a import Bench, numbers, registered, short, stream
 from support.power_mate import psd
@@ -33,6 +34,7 @@ def elsewhere(b: Bench) -> None:
     _parity(b)
     _streams(b)
     _freed(b)
+    _beside(b)
 
 
 def _limits(b: Bench) -> None:
@@ -260,3 +262,72 @@ def _freed(b: Bench) -> None:
         ]
         codes += [short(fwlib.cnc_upstart(other, 7)), str(fwlib.cnc_getmactype(other)[1])]
         b.say(f"{words}: {' '.join(codes)}, {'a transfer' if device.transfer else 'none'}")
+
+
+def _beside(b: Bench) -> None:
+    b.title("a key in every mode")
+    for mode in PowerMateMode:
+        device = b.control()
+        registered(device, O7=";M30", O8=";M30")
+        device.select_mode(mode)
+        device.protect_key(True, key=3)
+        codes = [
+            b.cell("cnc_dwnstart"),
+            b.cell("cnc_delete", 7),
+            b.cell("cnc_upstart", 8),
+            b.cell("cnc_search", 8),
+        ]
+        b.say(
+            f"{mode.label}: {' '.join(codes)} {b.cell('cnc_delall')}, {len(device.programs.memory)} programs"
+        )
+    b.title("selected, or registered, between a download and its end; 3201 = 64 and 68")
+    for value in (64, 68):
+        for words in ("selected", "registered"):
+            device = b.control()
+            registered(device, O7=";M30", O8=";G1;M30")
+            b.code("cnc_wrparam", 5, psd(3201, 0, cdata=value))
+            data = stream("O8" if words == "selected" and value == 68 else "O9", "G2", "M30")
+            codes = [b.cell("cnc_dwnstart"), b.cell("cnc_download", data, len(data))]
+            if words == "registered":
+                registered(device, O9=";G3;M30")
+            elif value == 68:
+                device.select_program(8)
+            codes.append(b.cell("cnc_dwnend"))
+            b.say(
+                f"{value}, {words}: {' '.join(codes)}, {b.get('cnc_rdprogdir', 2, 1, 9999, 99).prg_data.decode()}"
+            )
+    b.title("a rotary axis more than a turn away, either side, with limits and without")
+    for way in (-400, 400):
+        for limit in (None, 399, -399, 500, -500):
+            device = b.control(rotary=(3,))
+            registered(device, O7=f";G0A{way}.;M30")
+            if limit:
+                b.code("cnc_wrparam", 8, psd(1320 if limit > 0 else 1321, 3, ldata=limit * 1000))
+            device.select_program(7)
+            device.cycle_start()
+            device.advance(3000)
+            b.say(f"to {way}, limit {limit}: {_where(b)}")
+    b.title("what a Power Mate-D does not have, in states")
+    here = [fwlib.ODBPOS(idata=1, ldata=5)]
+    for words in ("alarm", "emergency stop", "MDI", "JOG", "moves", "reset", "off and on"):
+        device = b.control(model="D")
+        registered(device, O7=";G1X9.F600;M30")
+        device.select_program(7)
+        acts: dict[str, Callable[[], object]] = {
+            "alarm": lambda device=device: device.raise_alarm(1007),
+            "emergency stop": device.emergency_stop,
+            "moves": device.cycle_start,
+            "reset": device.reset,
+            "off and on": device.power_cycle,
+        }
+        acts.get(words, lambda device=device, words=words: device.select_mode(words))()
+        device.advance(20)
+        codes = [
+            b.cell(f"cnc_{name}", *given)
+            for name, given in (
+                ("opdi", (1, fwlib.ODBOPDI(axis=1))), ("refpoint", (1, 0, 1)), ("abspoint", (1, 0, 1, 100, here)),
+                ("incpoint", (1, 0, 1, 100, here)), ("dwell", (1, 0, 1, here)), ("coordre", (1, 0, 1, here)),
+                ("exebufstat", ()), ("finstate", ()), ("setfin", (fwlib.ODBFIN(),)),
+            )
+        ]  # fmt: skip
+        b.say(f"{words}: {' '.join(codes)}")

@@ -155,7 +155,7 @@ SCENES: dict[str, tuple[Callable[[Bench], None], str]] = {
     "products": (products.products, PRODUCTS),
     "elsewhere": (
         more.elsewhere,
-        r"ncparam\.(0000_0|132[01]|608.|3201_2|3202_.)|concept\.(duplicate_program|handle_lifecycle|write_protection_programs|selected_program)"
+        r"ncparam\.(0000_0|132[01]|608.|3201_2|3202_.|3290_7)|cnc_dwnstart\.err\.EW_PROT|concept\.(power_mate_d_limit|protect_key|duplicate_program|handle_lifecycle|write_protection_programs|selected_program)"
         r"|cnc_(freelibhndl|dwnstart|rdprogdir)|cnc_(download|dwnend)\.err\.EW_(DATA|PROT|RESET|FUNC)|units\..*|ODBDY\.alarm(\.bit[34])?|concept\.(tv_check|tool_offset_memory|position_contents)"
         r"|cnc_(absolute|machine|rddynamic|rdmacror|rdtofs|wrtofs|wrparam|download|dwnend|wrmdiprog)(\.err\.EW_DATA)?|EW_(DATA|NOOPT)"
         r"|cnc_wrparam\.err\.EW_NOOPT|option\.param_write|IODBMR\.data\..*|enum\.axis\.ALL_AXES|ALL_AXES|MAX_AXIS",
