@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
 from typing import Any
 
 from polycnc.controllers.fanuc import PowerMate, PowerMateMode, fwlib
@@ -314,13 +315,13 @@ def _beside(b: Bench) -> None:
         registered(device, O7=";G1X9.F600;M30")
         device.select_program(7)
         acts: dict[str, Callable[[], object]] = {
-            "alarm": lambda device=device: device.raise_alarm(1007),
+            "alarm": partial(device.raise_alarm, 1007),
             "emergency stop": device.emergency_stop,
             "moves": device.cycle_start,
             "reset": device.reset,
             "off and on": device.power_cycle,
         }
-        acts.get(words, lambda device=device, words=words: device.select_mode(words))()
+        acts.get(words, partial(device.select_mode, words))()
         device.advance(20)
         codes = [
             b.cell(f"cnc_{name}", *given)
