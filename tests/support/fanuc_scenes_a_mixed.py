@@ -25,7 +25,7 @@ from support.fanuc_scenes_a_wire import Cable
 from support.power_mate import psd
 
 Act = Callable[[Bench], object]
-ROWS = 64
+ROWS = 58
 TRIES = 12
 LETTERS = {
     "OK": "O", "LEN": "L", "NUM": "N", "ATTR": "A", "DATA": "D", "BUSY": "B", "FUNC": "F", "PROT": "P", "OVRFL": "V",
