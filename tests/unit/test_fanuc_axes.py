@@ -51,6 +51,7 @@ def test_a_handle_is_opened_used_and_closed() -> None:
         assert fwlib.cnc_freelibhndl(handle) == OK
 
 
+@pytest.mark.covers("fanuc.EW_ATTRIB", "fanuc.EW_NUMBER", "fanuc.concept.axis_number")
 @pytest.mark.covers("fanuc.EW_HSSB")
 @pytest.mark.covers("fanuc.cnc_absolute")
 @covers("cnc_allclibhndl2", "range.node")
@@ -79,6 +80,7 @@ def test_nodes_0_to_7_are_controls_of_their_own() -> None:
     assert fwlib.cnc_absolute(handles[7], 4, 8)[0] == OK
 
 
+@pytest.mark.covers("fanuc.EW_ATTRIB", "fanuc.EW_NUMBER", "fanuc.concept.axis_number")
 @pytest.mark.covers("fanuc.cnc_absolute")
 @pytest.mark.covers("fanuc.concept.handle_lifecycle", "fanuc.range.node")
 @pytest.mark.covers("fanuc.cnc_absolute.err.EW_ATTRIB")
@@ -119,6 +121,7 @@ def test_a_fault_of_a_node_is_the_answer_of_every_call() -> None:
     assert fwlib.cnc_absolute(handle, 1, 8)[0] == OK
 
 
+@pytest.mark.covers("fanuc.EW_FUNC")
 @pytest.mark.covers("fanuc.cnc_download", "fanuc.cnc_freelibhndl")
 @pytest.mark.covers("fanuc.cnc_dwnstart")
 @pytest.mark.covers(
@@ -142,6 +145,9 @@ def test_closing_a_handle_breaks_its_transfers_off_and_no_others() -> None:
     assert fwlib.cnc_dwnstart(handle) == OK
 
 
+@pytest.mark.covers(
+    "fanuc.ODBAXIS.data", "fanuc.concept.axis_number", "fanuc.concept.position_contents", "fanuc.enum.axis.1..m",
+)  # fmt: skip
 @pytest.mark.covers("fanuc.cnc_freelibhndl", "fanuc.cnc_relative")
 @pytest.mark.covers("fanuc.cnc_wrrelpos")
 @pytest.mark.covers("fanuc.concept.handle_lifecycle", "fanuc.common.handle2")
@@ -184,6 +190,7 @@ def test_example_actual_feed() -> None:
     assert fwlib.cnc_actf(handle)[1].data == 0
 
 
+@pytest.mark.covers("fanuc.ODBACT.data")
 @pytest.mark.covers("fanuc.cnc_actf")
 def test_actual_feed_in_inch_has_two_decimals() -> None:
     control, handle = attached(inch_input=True)
@@ -198,6 +205,7 @@ def test_actual_feed_in_inch_has_two_decimals() -> None:
     assert fwlib.cnc_actf(handle)[1].data == 300  # deg/min
 
 
+@pytest.mark.covers("fanuc.concept.position_contents")
 @covers(
     "example.cnc_absolute", "cnc_absolute", "enum.axis.ALL_AXES", "enum.axis.1..m", "concept.decimal_point"
 )
@@ -213,6 +221,7 @@ def test_example_absolute() -> None:
     assert read("absolute", handle, 3, 8)[1][0] == 80
 
 
+@pytest.mark.covers("fanuc.ODBAXIS.data", "fanuc.ODBAXIS.type", "fanuc.enum.axis.1..m")
 @covers("example.cnc_machine", "cnc_machine")
 @pytest.mark.covers(
     "fanuc.concept.axis_number",
@@ -226,6 +235,7 @@ def test_example_machine_in_inch_output() -> None:
     assert read("machine", handle, 2, 8) == (OK, [-265593, 0, 0, 0, 0, 0])
 
 
+@pytest.mark.covers("fanuc.ODBAXIS.data", "fanuc.ODBAXIS.type", "fanuc.enum.axis.1..m")
 @covers("example.cnc_relative", "cnc_relative")
 @pytest.mark.covers(
     "fanuc.concept.axis_number", "fanuc.concept.decimal_point", "fanuc.concept.position_contents"
@@ -236,6 +246,10 @@ def test_example_relative_of_a_rotary_axis_is_not_folded() -> None:
     assert read("relative", handle, 4, 8) == (OK, [900051, 0, 0, 0, 0, 0])
 
 
+@pytest.mark.covers(
+    "fanuc.ALL_AXES", "fanuc.ODBAXIS.data", "fanuc.ODBAXIS.type", "fanuc.concept.axis_number", "fanuc.enum.axis.1..m",
+    "fanuc.enum.axis.ALL_AXES",
+)  # fmt: skip
 @covers("example.cnc_distance", "cnc_distance")
 @pytest.mark.covers("fanuc.concept.decimal_point", "fanuc.concept.position_contents")
 def test_example_distance_is_twice_the_real_one() -> None:
@@ -254,6 +268,11 @@ def test_example_distance_is_twice_the_real_one() -> None:
     assert read("distance", handle, 2, 8)[1][0] == pytest.approx(2000 * left, abs=1.01)
 
 
+@pytest.mark.covers(
+    "fanuc.ALL_AXES", "fanuc.ODBAXIS.data", "fanuc.ODBAXIS.type", "fanuc.cnc_absolute", "fanuc.cnc_relative",
+    "fanuc.concept.axis_number", "fanuc.enum.axis.1..m", "fanuc.enum.axis.ALL_AXES", "fanuc.example.cnc_absolute",
+    "fanuc.example.cnc_relative",
+)  # fmt: skip
 @covers("example.cnc_wrrelpos", "cnc_wrrelpos", "concept.position_contents")
 @pytest.mark.covers("fanuc.IDBWRR.data", "fanuc.IDBWRR.type")
 @pytest.mark.covers("fanuc.struct.IDBWRR")
@@ -271,6 +290,10 @@ def test_example_relative_preset_to_the_origin() -> None:
     assert read("relative", handle, 2, 8)[1][0] == 77
 
 
+@pytest.mark.covers(
+    "fanuc.ALL_AXES", "fanuc.EW_ATTRIB", "fanuc.EW_DATA", "fanuc.EW_LENGTH", "fanuc.ODBAXIS.data",
+    "fanuc.ODBAXIS.type", "fanuc.cnc_relative", "fanuc.concept.position_contents", "fanuc.enum.axis.ALL_AXES",
+)  # fmt: skip
 @pytest.mark.covers("fanuc.cnc_wrrelpos")
 @covers("cnc_wrrelpos.err.EW_LENGTH", "cnc_wrrelpos.err.EW_ATTRIB", "cnc_wrrelpos.err.EW_DATA")
 @pytest.mark.covers("fanuc.concept.length_argument", "fanuc.concept.axis_number")
@@ -293,6 +316,10 @@ def test_presets_that_are_refused_change_nothing() -> None:
 # ---------------------------------------------------------------------- what positions contain
 
 
+@pytest.mark.covers(
+    "fanuc.ALL_AXES", "fanuc.ODBAXIS.data", "fanuc.ODBAXIS.type", "fanuc.concept.axis_number", "fanuc.enum.axis.1..m",
+    "fanuc.enum.axis.ALL_AXES",
+)  # fmt: skip
 @pytest.mark.covers("fanuc.cnc_wrtofs")
 @pytest.mark.covers(
     "fanuc.concept.position_contents", "fanuc.cnc_relative", "fanuc.cnc_absolute", "fanuc.cnc_machine"
@@ -310,6 +337,10 @@ def test_positions_know_work_offsets_tool_length_and_units() -> None:
     assert read("absolute", handle, 3, 8)[1][0] == read("machine", handle, 3, 8)[1][0] == 4_500
 
 
+@pytest.mark.covers(
+    "fanuc.ODBAXIS.data", "fanuc.ODBAXIS.type", "fanuc.concept.axis_number", "fanuc.concept.position_contents",
+    "fanuc.enum.axis.1..m",
+)  # fmt: skip
 @pytest.mark.covers("fanuc.concept.decimal_point")
 @pytest.mark.parametrize(
     ("increment", "inch", "counts"),
@@ -336,6 +367,7 @@ def test_increments_scale_positions_of_linear_axes(increment: str, inch: bool, c
     assert read("absolute", handle, 2, 8)[1][0] == -75 * 10 ** {"IS-A": 1, "IS-B": 2, "IS-C": 3}[increment]
 
 
+@pytest.mark.covers("fanuc.ODBAXIS.data", "fanuc.ODBAXIS.type", "fanuc.enum.axis.1..m")
 @covers("concept.decimal_point", "cnc_absolute", "cnc_machine")
 @pytest.mark.covers("fanuc.concept.position_contents", "fanuc.param.0000_2")
 def test_units_follow_g20_and_the_setting() -> None:
@@ -353,6 +385,10 @@ def test_units_follow_g20_and_the_setting() -> None:
     assert read("absolute", handle, 1, 8)[1][0] == 15_000
 
 
+@pytest.mark.covers(
+    "fanuc.ALL_AXES", "fanuc.ODBAXIS.data", "fanuc.ODBAXIS.type", "fanuc.cnc_absolute", "fanuc.concept.axis_number",
+    "fanuc.enum.axis.1..m", "fanuc.enum.axis.ALL_AXES",
+)  # fmt: skip
 @covers("example.cnc_skip", "cnc_skip")
 @pytest.mark.covers("fanuc.concept.position_contents")
 def test_skip_positions_are_those_at_the_signal() -> None:
@@ -374,6 +410,7 @@ def test_skip_positions_are_those_at_the_signal() -> None:
     assert read("skip", handle, ALL_AXES, 12)[1][:2] == [0, 0]
 
 
+@pytest.mark.covers("fanuc.ALL_AXES", "fanuc.ODBAXIS.data", "fanuc.ODBAXIS.type", "fanuc.enum.axis.ALL_AXES")
 @pytest.mark.covers("fanuc.concept.position_contents")
 @covers("cnc_skip", "cnc_machine", "cnc_absolute")
 def test_skip_positions_are_absolute_ones() -> None:
@@ -385,6 +422,10 @@ def test_skip_positions_are_absolute_ones() -> None:
     assert read("machine", handle, ALL_AXES, 12)[1][:2] == [5_000, 10_000]
 
 
+@pytest.mark.covers(
+    "fanuc.ALL_AXES", "fanuc.ODBAXIS.data", "fanuc.ODBAXIS.type", "fanuc.cnc_absolute", "fanuc.concept.axis_number",
+    "fanuc.enum.axis.1..m", "fanuc.enum.axis.ALL_AXES",
+)  # fmt: skip
 @covers("example.cnc_srvdelay", "cnc_srvdelay")
 @pytest.mark.covers("fanuc.concept.position_contents")
 def test_servo_delay_is_the_following_error() -> None:
@@ -403,6 +444,10 @@ def test_servo_delay_is_the_following_error() -> None:
     assert read("srvdelay", ideal, ALL_AXES, 16)[1] == [0] * 6
 
 
+@pytest.mark.covers(
+    "fanuc.ALL_AXES", "fanuc.ODBAXIS.data", "fanuc.ODBAXIS.type", "fanuc.concept.axis_number", "fanuc.enum.axis.1..m",
+    "fanuc.enum.axis.ALL_AXES",
+)  # fmt: skip
 @pytest.mark.covers("fanuc.cnc_actf")
 @covers("example.cnc_accdecdly", "cnc_accdecdly")
 @pytest.mark.covers("fanuc.concept.position_contents")
@@ -416,6 +461,10 @@ def test_nothing_is_delayed_by_acceleration() -> None:
     assert read("accdecdly", handle, 3, 8) == (OK, [0] * 6)
 
 
+@pytest.mark.covers(
+    "fanuc.ALL_AXES", "fanuc.EW_ATTRIB", "fanuc.EW_LENGTH", "fanuc.ODBAXIS.type", "fanuc.concept.position_contents",
+    "fanuc.enum.axis.1..m", "fanuc.enum.axis.ALL_AXES",
+)  # fmt: skip
 @pytest.mark.parametrize(
     "name",
     [pytest.param(n, marks=covers(f"cnc_{n}.err.EW_LENGTH", f"cnc_{n}.err.EW_ATTRIB"), id=n) for n in READS],
@@ -443,6 +492,12 @@ def test_lengths_and_axes_of_position_reads(name: str) -> None:
 
 
 @pytest.mark.covers(
+    "fanuc.EW_DATA", "fanuc.EW_NOOPT", "fanuc.ODBAXIS.type", "fanuc.cnc_absolute", "fanuc.cnc_accdecdly",
+    "fanuc.cnc_distance", "fanuc.cnc_machine", "fanuc.cnc_relative", "fanuc.cnc_skip", "fanuc.cnc_srvdelay",
+    "fanuc.concept.position_contents", "fanuc.concept.program_number_range", "fanuc.enum.axis.1..m",
+    "fanuc.option.param_write",
+)  # fmt: skip
+@pytest.mark.covers(
     "fanuc.cnc_dwnend", "fanuc.cnc_rdmacro", "fanuc.cnc_rdparam", "fanuc.cnc_rdtofs", "fanuc.cnc_wrtofs"
 )
 @covers("concept.option_none")
@@ -469,6 +524,13 @@ def test_reads_need_no_option() -> None:
 # ---------------------------------------------------------------------- everything at one moment
 
 
+@pytest.mark.covers(
+    "fanuc.ALL_AXES", "fanuc.ODBACT.data", "fanuc.ODBAXIS.data", "fanuc.ODBAXIS.type", "fanuc.ODBDY.alarm.bit15",
+    "fanuc.ODBDY.dummy", "fanuc.ODBDY.pos.faxis.absolute", "fanuc.ODBDY.pos.faxis.machine",
+    "fanuc.ODBDY.pos.faxis.relative", "fanuc.cnc_absolute", "fanuc.cnc_distance", "fanuc.cnc_machine",
+    "fanuc.cnc_relative", "fanuc.concept.axis_number", "fanuc.concept.position_contents", "fanuc.enum.axis.1..m",
+    "fanuc.enum.axis.ALL_AXES",
+)  # fmt: skip
 @pytest.mark.covers("fanuc.cnc_actf")
 @covers("cnc_rddynamic", "concept.dynamic_snapshot", "example.cnc_rddynamic")
 @pytest.mark.covers(
@@ -522,6 +584,7 @@ def test_the_dynamic_data_are_those_of_the_single_functions() -> None:
     assert data.pos.faxis.absolute[0] - data.pos.faxis.machine[0] == 1000
 
 
+@pytest.mark.covers("fanuc.EW_ATTRIB", "fanuc.EW_LENGTH")
 @pytest.mark.covers("fanuc.cnc_rddynamic")
 @covers("cnc_rddynamic.err.EW_LENGTH", "cnc_rddynamic.err.EW_ATTRIB")
 @pytest.mark.covers("fanuc.concept.length_argument", "fanuc.concept.axis_number")
@@ -542,6 +605,10 @@ ENDS = {
 }  # fmt: skip
 
 
+@pytest.mark.covers(
+    "fanuc.ODBDY.alarm.bit3", "fanuc.concept.dynamic_snapshot", "fanuc.concept.position_contents",
+    "fanuc.concept.ps000_after_write", "fanuc.enum.axis.1..m",
+)  # fmt: skip
 @pytest.mark.parametrize(
     "bit",
     [pytest.param(bit, marks=covers(f"ODBDY.alarm.bit{bit}"), id=str(bit)) for bit in range(16)],
@@ -598,6 +665,7 @@ def test_a_polling_program_sees_time_pass_and_one_cycle_in_one_round() -> None:
     assert control.clock.cycles == 0
 
 
+@pytest.mark.covers("fanuc.EW_BUSY", "fanuc.mode.MEM")
 @pytest.mark.covers("fanuc.cnc_incpoint")
 def test_a_program_that_tries_again_what_is_busy_sees_time_pass() -> None:
     control, handle = attached(Poll(1))

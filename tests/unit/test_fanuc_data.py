@@ -27,6 +27,10 @@ def offset(handle: int, number: int) -> int:
     return int(data.data)
 
 
+@pytest.mark.covers(
+    "fanuc.ODBAXIS.data", "fanuc.ODBTOFS.data", "fanuc.ODBTOFS.datano", "fanuc.ODBTOFS.type",
+    "fanuc.concept.axis_number", "fanuc.concept.position_contents", "fanuc.enum.axis.1..m", "fanuc.struct.ODBTOFS",
+)  # fmt: skip
 @pytest.mark.covers("fanuc.cnc_machine")
 @covers("cnc_rdtofs", "cnc_wrtofs", "example.cnc_rdtofs", "example.cnc_wrtofs", "enum.offset_type.0")
 @pytest.mark.covers("fanuc.concept.tool_offset_memory")
@@ -43,6 +47,10 @@ def test_a_tool_offset_is_written_read_and_used() -> None:
         assert fwlib.cnc_wrtofs(handle, 1, 0, 8, 17) == OK
 
 
+@pytest.mark.covers(
+    "fanuc.EW_ATTRIB", "fanuc.EW_LENGTH", "fanuc.EW_NUMBER", "fanuc.ODBTOFS.data", "fanuc.ODBTOFS.datano",
+    "fanuc.ODBTOFS.type", "fanuc.enum.offset_type.0", "fanuc.struct.ODBTOFS",
+)  # fmt: skip
 @pytest.mark.covers("fanuc.cnc_rdtofs", "fanuc.cnc_wrtofs")
 @covers(
     "cnc_rdtofs.err.EW_LENGTH", "cnc_rdtofs.err.EW_NUMBER", "cnc_rdtofs.err.EW_ATTRIB", "cnc_wrtofs.err.EW_LENGTH",
@@ -66,6 +74,10 @@ def test_tool_offsets_that_are_refused() -> None:
         assert offset(handle, 64) == 5
 
 
+@pytest.mark.covers(
+    "fanuc.EW_DATA", "fanuc.ODBTOFS.data", "fanuc.ODBTOFS.datano", "fanuc.ODBTOFS.type", "fanuc.cnc_rdtofs",
+    "fanuc.enum.offset_type.0", "fanuc.struct.ODBTOFS",
+)  # fmt: skip
 @pytest.mark.parametrize(
     ("increment", "limit", "mm", "inch"),
     [
@@ -98,6 +110,10 @@ def test_unit_and_range_of_tool_offsets(increment: str, limit: int, mm: float, i
     assert control.units.increment == increment
 
 
+@pytest.mark.covers(
+    "fanuc.ODBTOFS.data", "fanuc.ODBTOFS.datano", "fanuc.ODBTOFS.type", "fanuc.cnc_rdtofs",
+    "fanuc.enum.offset_type.0", "fanuc.example.cnc_rdtofs", "fanuc.struct.ODBTOFS",
+)  # fmt: skip
 @covers(
     "cnc_rdtofsr", "cnc_wrtofsr", "example.cnc_rdtofsr", "example.cnc_wrtofsr", "enum.offset_type.all",
     "cnc_rdtofsinfo",
@@ -135,6 +151,10 @@ def test_examples_of_tool_offset_ranges() -> None:
     assert fwlib.cnc_rdtofsinfo(attached(offsets=32)[1])[1].use_no == 32
 
 
+@pytest.mark.covers(
+    "fanuc.EW_ATTRIB", "fanuc.EW_DATA", "fanuc.EW_LENGTH", "fanuc.EW_NUMBER", "fanuc.IODBTO.u.m_ofs",
+    "fanuc.enum.offset_type.0",
+)  # fmt: skip
 @pytest.mark.covers("fanuc.cnc_rdtofsr", "fanuc.cnc_wrtofsr")
 @covers(
     "cnc_rdtofsr.err.EW_LENGTH", "cnc_rdtofsr.err.EW_NUMBER", "cnc_rdtofsr.err.EW_ATTRIB", "cnc_wrtofsr.err.EW_LENGTH",
@@ -189,6 +209,12 @@ AXIS_TYPES = {
 }
 
 
+@pytest.mark.covers(
+    "fanuc.EW_ATTRIB", "fanuc.EW_LENGTH", "fanuc.IODBPSD.datano", "fanuc.IODBPSD.type", "fanuc.IODBPSD.u.cdata",
+    "fanuc.IODBPSD.u.idata", "fanuc.IODBPSD.u.ldata", "fanuc.concept.length_argument",
+    "fanuc.concept.param_record_stream", "fanuc.enum.prm_attr.0", "fanuc.enum.prm_attr.1", "fanuc.enum.prm_attr.2",
+    "fanuc.enum.prm_attr.3", "fanuc.ncparam.3202_0", "fanuc.ncparam.3202_4", "fanuc.struct.IODBPSD",
+)  # fmt: skip
 @pytest.mark.covers("fanuc.cnc_rdparam.err.EW_ATTRIB", "fanuc.cnc_wrparam", "fanuc.cnc_rdparam")
 @pytest.mark.parametrize("kind", [pytest.param(k, marks=covers(f"paramtype.{k}"), id=k) for k in TYPES])
 @covers("enum.param_axis.0")
@@ -215,6 +241,13 @@ def test_parameters_that_have_one_value(kind: str) -> None:
     assert parameter(handle, number) == value
 
 
+@pytest.mark.covers(
+    "fanuc.EW_ATTRIB", "fanuc.EW_LENGTH", "fanuc.IODBPSD.datano", "fanuc.IODBPSD.type", "fanuc.IODBPSD.u.cdata",
+    "fanuc.IODBPSD.u.cdatas", "fanuc.IODBPSD.u.idata", "fanuc.IODBPSD.u.idatas", "fanuc.IODBPSD.u.ldata",
+    "fanuc.IODBPSD.u.ldatas", "fanuc.concept.length_argument", "fanuc.concept.param_record_stream",
+    "fanuc.enum.prm_attr.0", "fanuc.enum.prm_attr.1", "fanuc.enum.prm_attr.2", "fanuc.enum.prm_attr.3",
+    "fanuc.ncparam.1321", "fanuc.struct.IODBPSD",
+)  # fmt: skip
 @pytest.mark.covers("fanuc.cnc_wrparam")
 @pytest.mark.covers("fanuc.cnc_rdparam")
 @pytest.mark.parametrize(
@@ -257,6 +290,7 @@ def test_parameters_of_axes(kind: str) -> None:
     assert parameter(handle, number, ALL_AXES)[:3] == [values[0], 3, values[2]]
 
 
+@pytest.mark.covers("fanuc.enum.param_axis.ALL_AXES", "fanuc.paramtype.byte_axis")
 @covers("cnc_rdparam", "example.cnc_rdparam", "ncparam.1020")
 @pytest.mark.covers("fanuc.IODBPSD.u.cdatas")
 @pytest.mark.covers("fanuc.struct.IODBPSD")
@@ -268,6 +302,13 @@ def test_example_axis_names() -> None:
     assert "".join(chr(each) if each else "-" for each in data.u.cdatas) == "XYAZ--"
 
 
+@pytest.mark.covers(
+    "fanuc.IODBPSD.datano", "fanuc.IODBPSD.type", "fanuc.IODBPSD.u.ldata", "fanuc.ODBAXIS.data", "fanuc.ODBDY.alarm",
+    "fanuc.ODBDY.alarm.bit4", "fanuc.cnc_rdparam", "fanuc.concept.axis_number", "fanuc.concept.dynamic_snapshot",
+    "fanuc.concept.position_contents", "fanuc.enum.axis.1..m", "fanuc.enum.param_axis.1..m",
+    "fanuc.example.cnc_machine", "fanuc.example.cnc_rddynamic", "fanuc.example.cnc_rdparam",
+    "fanuc.paramtype.two_word_axis", "fanuc.struct.IODBPSD",
+)  # fmt: skip
 @pytest.mark.covers("fanuc.cnc_machine", "fanuc.cnc_rddynamic")
 @covers("cnc_wrparam", "example.cnc_wrparam", "ncparam.1320", "ncparam.1321")
 def test_example_stroke_limits_act_on_the_machine() -> None:
@@ -304,6 +345,11 @@ def test_example_stroke_limits_act_on_the_machine() -> None:
     assert fwlib.cnc_machine(handle, 2, 8)[1].data[0] == 12_600
 
 
+@pytest.mark.covers(
+    "fanuc.EW_ATTRIB", "fanuc.EW_DATA", "fanuc.EW_LENGTH", "fanuc.EW_NOOPT", "fanuc.EW_NUMBER", "fanuc.EW_PROT",
+    "fanuc.IODBPSD.datano", "fanuc.IODBPSD.type", "fanuc.IODBPSD.u.cdata", "fanuc.cnc_wrparas",
+    "fanuc.concept.option_none", "fanuc.paramtype.byte_axis", "fanuc.struct.IODBPSD",
+)  # fmt: skip
 @pytest.mark.covers("fanuc.cnc_rdparam")
 @covers(
     "cnc_rdparam.err.EW_LENGTH", "cnc_rdparam.err.EW_NUMBER", "cnc_rdparam.err.EW_ATTRIB", "cnc_wrparam.err.EW_LENGTH",
@@ -361,6 +407,11 @@ def test_parameters_that_are_refused_change_nothing() -> None:
     assert control.parameters.value(3210) == 78
 
 
+@pytest.mark.covers(
+    "fanuc.IODBPSD.datano", "fanuc.IODBPSD.type", "fanuc.IODBPSD.u.cdata", "fanuc.cnc_rdparam",
+    "fanuc.enum.param_axis.0", "fanuc.ncparam.3202_0", "fanuc.ncparam.3202_4", "fanuc.paramtype.bit",
+    "fanuc.struct.IODBPSD",
+)  # fmt: skip
 @pytest.mark.covers("fanuc.cnc_wrparam")
 @covers("concept.bit_param_rmw")
 def test_a_bit_is_changed_by_writing_its_byte() -> None:
@@ -374,6 +425,12 @@ def test_a_bit_is_changed_by_writing_its_byte() -> None:
     assert attached()[0].parameters.value(3202) == 0
 
 
+@pytest.mark.covers(
+    "fanuc.EW_BUSY", "fanuc.ODBDY.alarm", "fanuc.ODBDY.alarm.bit1", "fanuc.cnc_dwnstart.err.EW_BUSY",
+    "fanuc.cnc_upstart.err.EW_BUSY", "fanuc.concept.download_session", "fanuc.concept.dynamic_snapshot",
+    "fanuc.concept.position_contents", "fanuc.concept.program_busy_conditions", "fanuc.concept.upload_session",
+    "fanuc.enum.axis.1..m", "fanuc.mode.MEM",
+)  # fmt: skip
 @pytest.mark.covers("fanuc.cnc_delete", "fanuc.cnc_rddynamic", "fanuc.cnc_search", "fanuc.cnc_upstart")
 @covers("concept.ps000_after_write", "ODBPARAIF.prm_type.bit6")
 @pytest.mark.covers(
@@ -458,6 +515,10 @@ def test_a_range_of_parameters_is_a_sequence_of_records() -> None:
     assert fwlib.cnc_rdparar(handle, 1420, ALL_AXES, 1420, 100)[3] == 12
 
 
+@pytest.mark.covers(
+    "fanuc.EW_ATTRIB", "fanuc.EW_LENGTH", "fanuc.EW_NUMBER", "fanuc.concept.param_record_stream",
+    "fanuc.enum.param_axis.0", "fanuc.enum.prm_attr.3",
+)  # fmt: skip
 @pytest.mark.covers("fanuc.cnc_rdparar")
 @covers("cnc_rdparar.err.EW_LENGTH", "cnc_rdparar.err.EW_NUMBER", "cnc_rdparar.err.EW_ATTRIB")
 @pytest.mark.covers(
@@ -491,6 +552,10 @@ def test_ranges_of_parameters_that_are_refused() -> None:
     assert fwlib.cnc_rdparar(handle, 1420, 6, 1420, 8) == (OK, 1420, 1420, 8, record(1420, 3, 6, 0))
 
 
+@pytest.mark.covers(
+    "fanuc.IODBPSD.datano", "fanuc.IODBPSD.type", "fanuc.IODBPSD.u.cdata", "fanuc.cnc_rdparam",
+    "fanuc.enum.param_axis.0", "fanuc.example.cnc_rdparam", "fanuc.paramtype.byte", "fanuc.struct.IODBPSD",
+)  # fmt: skip
 @pytest.mark.parametrize(
     "slot", [pytest.param(k, marks=covers(f"ncparam.{6080 + k}"), id=str(6080 + k)) for k in range(10)]
 )
@@ -627,6 +692,7 @@ BITS: dict[str, tuple[int, int, tuple[int, ...]]] = {
 # fmt: on
 
 
+@pytest.mark.covers("fanuc.ODBPARAIF.info.prm_no", "fanuc.ODBPARAIF.info.prm_type", "fanuc.cnc_rdparainfo")
 @pytest.mark.parametrize(
     "name", [pytest.param(n, marks=covers(f"ODBPARAIF.prm_type.{n}"), id=n) for n in BITS]
 )
@@ -644,6 +710,7 @@ def test_attribute_bits(name: str) -> None:
         assert int(flag) == 1 << shift
 
 
+@pytest.mark.covers("fanuc.ODBPARAIF.info.prm_no", "fanuc.ODBPARAIF.info.prm_type", "fanuc.cnc_rdparainfo")
 @covers("ODBPARAIF.prm_type.bit0_1")
 @pytest.mark.covers("fanuc.struct.ODBPARAIF")
 @pytest.mark.covers("fanuc.concept.param_record_stream", "fanuc.concept.sparse_parameters")
@@ -662,6 +729,11 @@ def test_type_attribute() -> None:
 # ---------------------------------------------------------------------- settings
 
 
+@pytest.mark.covers(
+    "fanuc.IODBPSD.datano", "fanuc.IODBPSD.type", "fanuc.IODBPSD.u.cdatas", "fanuc.cnc_rdparam",
+    "fanuc.concept.param_record_stream", "fanuc.enum.param_axis.ALL_AXES", "fanuc.enum.prm_attr.0",
+    "fanuc.enum.prm_attr.3", "fanuc.paramtype.bit_axis", "fanuc.struct.IODBPSD",
+)  # fmt: skip
 @covers("cnc_rdsetr", "cnc_wrsets", "concept.setting_subset")
 def test_settings_are_the_parameters_of_the_setting_screen() -> None:
     _, handle = attached()
@@ -680,6 +752,11 @@ def test_settings_are_the_parameters_of_the_setting_screen() -> None:
     assert parameter(handle, 12, ALL_AXES) == [1, 0, 1, 0, 0, 0]
 
 
+@pytest.mark.covers(
+    "fanuc.EW_ATTRIB", "fanuc.EW_LENGTH", "fanuc.EW_NOOPT", "fanuc.EW_NUMBER", "fanuc.IODBPSD.datano",
+    "fanuc.IODBPSD.type", "fanuc.IODBPSD.u.ldata", "fanuc.cnc_rdparam", "fanuc.concept.option_none",
+    "fanuc.enum.param_axis.0", "fanuc.paramtype.two_word", "fanuc.struct.IODBPSD",
+)  # fmt: skip
 @pytest.mark.covers("fanuc.cnc_rdsetr", "fanuc.cnc_wrsets")
 @covers(
     "cnc_rdsetr.err.EW_LENGTH", "cnc_rdsetr.err.EW_NUMBER", "cnc_rdsetr.err.EW_ATTRIB", "cnc_wrsets.err.EW_LENGTH",
@@ -719,6 +796,10 @@ def _with_option(number: int, option: str) -> Any:
     return replace(parameter_rows()[number], option=option)
 
 
+@pytest.mark.covers(
+    "fanuc.IODBPSD.datano", "fanuc.IODBPSD.type", "fanuc.IODBPSD.u.ldata", "fanuc.cnc_rdparam",
+    "fanuc.enum.param_axis.0", "fanuc.paramtype.two_word", "fanuc.struct.IODBPSD",
+)  # fmt: skip
 @pytest.mark.covers("fanuc.cnc_wrsets")
 @pytest.mark.covers("fanuc.concept.setting_subset")
 def test_counters_and_timers_are_settings() -> None:

@@ -278,6 +278,9 @@ def test_speeds_and_limits_of_an_inch_machine() -> None:
     assert axis.vmax == pytest.approx(15_000 / 60 * 2.54)  # 0.1 inch/min
 
 
+@pytest.mark.covers(
+    "fanuc.ODBAXIS.data", "fanuc.concept.axis_number", "fanuc.concept.position_contents", "fanuc.enum.axis.1..m",
+)  # fmt: skip
 @pytest.mark.covers("fanuc.cnc_machine")
 @pytest.mark.parametrize(
     ("code", "name"), [(0, "Y"), (ord("X"), "Y"), (7, "Y"), (ord("N"), "Y"), (ord("W"), "W")]

@@ -39,6 +39,11 @@ LISTS = {
 }
 
 
+@pytest.mark.covers(
+    "fanuc.PERCENT", "fanuc.enum.rdprogdir_type.0", "fanuc.enum.rdprogdir_type.1", "fanuc.enum.rdprogdir_type.2",
+    "fanuc.example.cnc_rdprogdir", "fanuc.format.progdir_type0", "fanuc.format.progdir_type1",
+    "fanuc.format.progdir_type2",
+)  # fmt: skip
 @pytest.mark.parametrize(
     "kind",
     [
@@ -202,6 +207,10 @@ def test_example_sequence_number_is_kept_by_blocks_without_one() -> None:
     assert fwlib.cnc_rdseqnum(handle)[1].data == 40
 
 
+@pytest.mark.covers(
+    "fanuc.ODBPRO.data", "fanuc.ODBPRO.mdata", "fanuc.cnc_rddynamic", "fanuc.concept.dynamic_snapshot",
+    "fanuc.concept.position_contents", "fanuc.concept.selected_program", "fanuc.enum.axis.1..m",
+)  # fmt: skip
 @covers("concept.seqnum_retention", "cnc_rdseqnum", "ODBSEQ.data", "concept.subprogram_numbers")
 @pytest.mark.covers("fanuc.cnc_rdprgnum", "fanuc.ODBDY.seqnum")
 def test_a_subprogram_without_sequence_numbers_keeps_that_of_its_caller() -> None:
@@ -223,6 +232,7 @@ def test_a_subprogram_without_sequence_numbers_keeps_that_of_its_caller() -> Non
     assert in_order[-3:] == [(1, 2, 12345), (1, 3, 12345), (1, 3, 7)]
 
 
+@pytest.mark.covers("fanuc.EW_LENGTH", "fanuc.concept.length_argument")
 @covers("cnc_rdexecprog", "cnc_rdexecprog.err.EW_LENGTH")
 @pytest.mark.covers("fanuc.concept.subprogram_numbers", "fanuc.concept.truncation")
 def test_the_program_in_execution() -> None:
@@ -243,6 +253,10 @@ def test_the_program_in_execution() -> None:
 # ---------------------------------------------------------------------- MDI
 
 
+@pytest.mark.covers(
+    "fanuc.EW_DATA", "fanuc.ODBAXIS.data", "fanuc.concept.position_contents", "fanuc.enum.axis.1..m",
+    "fanuc.example.cnc_absolute",
+)  # fmt: skip
 @covers("cnc_wrmdiprog", "example.cnc_wrmdiprog_format", "concept.mdi_program", "mode.MDI")
 @pytest.mark.covers("fanuc.cnc_absolute", "fanuc.cnc_wrmdiprog.err.EW_DATA")
 @pytest.mark.covers("fanuc.concept.program_number_range")
@@ -259,6 +273,10 @@ def test_example_mdi_program() -> None:
     assert len(control.programs) == 0
 
 
+@pytest.mark.covers(
+    "fanuc.EW_DATA", "fanuc.EW_LENGTH", "fanuc.EW_MODE", "fanuc.EW_REJECT", "fanuc.concept.length_argument",
+    "fanuc.mode.MEM",
+)  # fmt: skip
 @covers(
     "cnc_wrmdiprog.err.EW_LENGTH", "cnc_wrmdiprog.err.EW_DATA", "cnc_wrmdiprog.err.EW_MODE",
     "cnc_wrmdiprog.err.EW_REJECT", "range.mdi_length",
@@ -339,6 +357,7 @@ def test_mdi_pointers() -> None:
     assert pointers() == (0, 0, 0, 0)  # another program begins at its head
 
 
+@pytest.mark.covers("fanuc.EW_DATA", "fanuc.mode.MEM")
 @pytest.mark.covers("fanuc.cnc_rdmdipntr", "fanuc.cnc_wrmdipntr", "fanuc.cnc_wrmdiprog")
 @covers(
     "cnc_rdmdipntr.err.EW_MODE", "cnc_wrmdipntr.err.EW_DATA", "cnc_wrmdipntr.err.EW_MODE",
@@ -365,6 +384,10 @@ def test_mdi_pointers_that_are_refused() -> None:
 # ---------------------------------------------------------------------- cursor
 
 
+@pytest.mark.covers(
+    "fanuc.ALL_AXES", "fanuc.EW_DATA", "fanuc.ODBAXIS.data", "fanuc.ODBPRO.data", "fanuc.ODBSEQ.data",
+    "fanuc.concept.position_contents", "fanuc.concept.subprogram_numbers", "fanuc.enum.axis.ALL_AXES",
+)  # fmt: skip
 @pytest.mark.covers("fanuc.cnc_rdexecprog", "fanuc.cnc_rdseqnum")
 @covers("cnc_seqsrch", "cnc_rewind")
 @pytest.mark.covers("fanuc.cnc_absolute")

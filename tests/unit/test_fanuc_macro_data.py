@@ -38,6 +38,9 @@ def shown(mantissa: int, decimals: int) -> str:
     return f"{front}.{''.join(text)[10 - decimals :]}" if decimals >= 0 else " 00000000"
 
 
+@pytest.mark.covers(
+    "fanuc.ODBM.datano", "fanuc.ODBM.dec_val", "fanuc.ODBM.dummy", "fanuc.ODBM.mcr_val", "fanuc.struct.ODBM",
+)  # fmt: skip
 @covers("cnc_rdmacro", "cnc_wrmacro", "example.cnc_rdmacro", "example.cnc_wrmacro", "enum.macro_type.decimal")
 @pytest.mark.covers("fanuc.concept.macro_empty", "fanuc.concept.macro_out_of_range")
 def test_macro_variables_in_decimal_form() -> None:
@@ -70,6 +73,10 @@ def test_macro_variables_in_decimal_form() -> None:
     assert fwlib.cnc_wrmacro(handle, 137, 12, 5, 0) == OK
 
 
+@pytest.mark.covers(
+    "fanuc.ODBM.datano", "fanuc.ODBM.dec_val", "fanuc.ODBM.dummy", "fanuc.ODBM.mcr_val", "fanuc.cnc_rdmacro",
+    "fanuc.enum.macro_type.binary", "fanuc.enum.macro_type.decimal", "fanuc.struct.ODBM",
+)  # fmt: skip
 @pytest.mark.covers("fanuc.cnc_wrmacro")
 @pytest.mark.covers("fanuc.cnc_setmactype")
 @covers("concept.macro_empty")
@@ -83,6 +90,10 @@ def test_vacant_is_not_zero() -> None:
         assert (macro(handle, 500), control.macros.get(500)) == ((0, -1), None)
 
 
+@pytest.mark.covers(
+    "fanuc.EW_DATA", "fanuc.ODBM.datano", "fanuc.ODBM.dec_val", "fanuc.ODBM.dummy", "fanuc.ODBM.mcr_val",
+    "fanuc.cnc_rdmacro", "fanuc.enum.macro_type.decimal", "fanuc.struct.ODBM",
+)  # fmt: skip
 @pytest.mark.covers("fanuc.cnc_wrmacro")
 @covers(
     "concept.macro_out_of_range",
@@ -118,6 +129,9 @@ def test_binary_form_reaches_farther_than_the_decimal_one() -> None:
     assert macro(other, 500) == (25, 1)
 
 
+@pytest.mark.covers(
+    "fanuc.EW_NUMBER", "fanuc.ODBM.datano", "fanuc.ODBM.dummy", "fanuc.ODBM.mcr_val", "fanuc.enum.macro_type.decimal",
+)  # fmt: skip
 @pytest.mark.covers("fanuc.cnc_rdmacror")
 @pytest.mark.parametrize(
     ("options", "code", "there", "missing"),

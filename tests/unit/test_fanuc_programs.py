@@ -31,6 +31,9 @@ def test_example_download_in_eight_pieces() -> None:
     assert [each.number for each in control.programs.directory()] == [1234]
 
 
+@pytest.mark.covers(
+    "fanuc.cnc_download", "fanuc.cnc_dwnend", "fanuc.cnc_dwnstart", "fanuc.example.cnc_download",
+)  # fmt: skip
 @covers("example.cnc_download_format", "format.download")
 @pytest.mark.parametrize("cut", [(23,), (1, 6, 11, 4, 1), (1,) * 23, (9, 9, 5), (2, 21)])
 @pytest.mark.covers("fanuc.LF")
@@ -123,6 +126,7 @@ def test_a_piece_has_1_to_256_characters() -> None:
     assert control.programs.read(7).count(b"X1234567\n") == 28
 
 
+@pytest.mark.covers("fanuc.EW_DATA", "fanuc.cnc_dwnstart")
 @covers("cnc_download.err.EW_DATA", "cnc_dwnend.err.EW_DATA", "concept.duplicate_program")
 @pytest.mark.parametrize(
     "stream",
@@ -359,6 +363,9 @@ def test_transfers_end_with_the_power() -> None:
     assert uploaded(handle, 7) == "%\nO0007\nG4X7.\nM30\n%"
 
 
+@pytest.mark.covers(
+    "fanuc.EW_DATA", "fanuc.ODBPRO.data", "fanuc.concept.program_number_range", "fanuc.concept.subprogram_numbers",
+)  # fmt: skip
 @covers(
     "cnc_search", "enum.search.foreground", "enum.search.background", "mode.MEM", "mode.EDIT", "mode.OTHER",
     "concept.selected_program", "example.cnc_search", "cnc_search.err.EW_DATA",
@@ -382,6 +389,7 @@ def test_search_selects_in_mem_and_edit_only() -> None:
             unchanged(control, lambda number=number: fwlib.cnc_search(handle, number), EW.EW_DATA)  # type: ignore[misc]
 
 
+@pytest.mark.covers("fanuc.EW_DATA", "fanuc.concept.program_number_range")
 @covers("cnc_delete", "example.cnc_delete", "cnc_delete.err.EW_DATA")
 @pytest.mark.covers(
     "fanuc.concept.program_busy_conditions", "fanuc.concept.mode_matrix", "fanuc.concept.selected_program"
@@ -397,6 +405,7 @@ def test_delete_takes_one_program_in_any_mode_but_mdi() -> None:
     assert [each.number for each in control.programs.directory()] == [200, 201]
 
 
+@pytest.mark.covers("fanuc.ODBPRO.data", "fanuc.concept.subprogram_numbers")
 @pytest.mark.covers("fanuc.cnc_rdprgnum")
 @covers("cnc_delall", "example.cnc_delall")
 @pytest.mark.covers(
@@ -516,6 +525,7 @@ MATRIX: list[tuple[Callable[[PowerMate, int], None], dict[str, EW]]] = [
 ]
 
 
+@pytest.mark.covers("fanuc.EW_PROT", "fanuc.cnc_upstart", "fanuc.cnc_upstart.err.EW_BUSY")
 @pytest.mark.covers("fanuc.cnc_delall.err.EW_PROT", "fanuc.cnc_delete.err.EW_PROT")
 @covers(
     "cnc_dwnstart.err.EW_BUSY", "cnc_dwnstart.err.EW_PROT", "cnc_search.err.EW_BUSY", "cnc_delall.err.EW_BUSY",
@@ -544,6 +554,7 @@ def test_refusal_matrix(state: Callable[[PowerMate, int], None], answers: dict[s
         assert (control.transfer is not None) is (state in (_download, _compare))
 
 
+@pytest.mark.covers("fanuc.EW_BUSY", "fanuc.mode.MEM")
 @covers("cnc_delete.err.EW_BUSY")
 @pytest.mark.covers("fanuc.cnc_delete", "fanuc.cnc_search")
 @pytest.mark.covers(
@@ -570,6 +581,7 @@ def test_in_other_modes_than_edit_and_mem_the_op_signal_does_not_matter() -> Non
     unchanged(control, lambda: fwlib.cnc_delall(handle), BUSY)  # O201 is being executed
 
 
+@pytest.mark.covers("fanuc.EW_PROT", "fanuc.cnc_dwnstart")
 @pytest.mark.covers("fanuc.cnc_delall")
 @covers(
     "concept.write_protection_programs", "cnc_delall.err.EW_PROT", "cnc_delete.err.EW_PROT", "ncparam.3202_0",
@@ -610,6 +622,7 @@ def test_parameters_protect_programs(
     assert len(control.programs) == 0
 
 
+@pytest.mark.covers("fanuc.EW_PROT")
 @covers("ncparam.3290_7")
 @pytest.mark.covers("fanuc.cnc_delete")
 @pytest.mark.covers("fanuc.concept.write_protection_programs", "fanuc.concept.protect_key")
@@ -627,6 +640,9 @@ def test_which_key_protects_programs() -> None:
     unchanged(control, lambda: fwlib.cnc_dwnstart(handle), PROT)
 
 
+@pytest.mark.covers(
+    "fanuc.EW_DATA", "fanuc.cnc_dwnend.err.EW_DATA", "fanuc.cnc_dwnstart", "fanuc.concept.program_number_range",
+)  # fmt: skip
 @pytest.mark.covers("fanuc.cnc_download")
 @pytest.mark.covers("fanuc.concept.compare_running")
 @pytest.mark.covers("fanuc.cnc_dwnend")

@@ -18,13 +18,17 @@ import pytest
 
 from polycnc.conformance import State, load_conformance
 from polycnc.controllers.fanuc import fwlib
+from polycnc.controllers.fanuc.fwlib import EW
 from support import fanuc_scenes_a_axes as axes
 from support import fanuc_scenes_a_data as data
 from support import fanuc_scenes_a_macros as macros
+from support import fanuc_scenes_a_mixed as mixed
+from support import fanuc_scenes_a_more as more
+from support import fanuc_scenes_a_products as products
 from support import fanuc_scenes_a_programs as programs
 from support import fanuc_scenes_a_walk as walk
 from support import fanuc_scenes_a_wire as wire
-from support.fanuc_scenes_a import Bench
+from support.fanuc_scenes_a import Bench, short
 
 RECORDED = Path(__file__).parents[1] / "golden" / "fanuc_a"
 AXES = "actf|absolute|machine|relative|distance|skip|srvdelay|accdecdly|rddynamic|wrrelpos"
@@ -46,6 +50,20 @@ TRANSFERS = (
     r"(example\.)?cnc_(download|dwnstart|dwnend|upstart|upload|upend)(_format)?(\.err\..*)?|format\.(download|upload)|LF|PERCENT|MAX_RBUF"
     r"|concept\.((down|up)load_session|tv_check|duplicate_program|program_number_range|memory_accounting|no_nul_termination)"
     r"|range\.download_number|(struct\.)?ODBUP(\..*)?|ncparam\.(0000_0|3201_[26])"
+)
+
+MIXED = (
+    rf"(example\.)?cnc_({AXES}|{PROGRAMS}|{PARAMETERS}|{MACROS}|{OFFSETS})(\.err\.(?!EW_RESET).*)?|{CODES}|mode\..*|units\..*|paramtype\..*"
+    rf"|(struct\.)?({STRUCTURES})(\..*)?|enum\..*|option\..*|range\.(?!node).*|MAX_AXIS|ALL_AXES|format\..*"
+    r"|concept\.(?!function_index|header|c_types|handle_lifecycle|truncation).*"
+)
+PRODUCTS = (
+    rf"cnc_({AXES}|{OFFSETS}|{MACROS}|{PARAMETERS}|rdprogdir|rdproginfo|upstart|upload|upend|search|seqsrch|wrmdipntr|wrmdiprog|rewind|download)"
+    r"(\.err\.EW_(LENGTH|NUMBER|ATTRIB|DATA|NOOPT|PROT|MODE|REJECT))?|range\.(download_number|mdi_length)|ALL_AXES"
+    r"|EW_(LENGTH|NUMBER|ATTRIB|DATA|PROT|MODE)|enum\.(param_axis|offset_type|rdprog.*|macro_type)\..*"
+    r"|concept\.(length_argument|axis_param_rule|macro_local_scope|macro_out_of_range|setting_subset|program_number_range|param_record_stream)"
+    r"|ODB(AXIS|DY|TOFS|M|PARAIF)\..*|IODBMR\..*|IODBTO\..*|IODBPSD\..*|enum\.(axis|prm_attr)\..*|paramtype\..*|concept\.bit_param_rmw"
+    r"|ncparam\.(?!1004).*|example\.cnc_(rd|wr)(tofsr|parar|paras|macror)|concept\.(length_argument|axis_number|sparse_parameters)|MAX_AXIS"
 )
 
 SCENES: dict[str, tuple[Callable[[Bench], None], str]] = {
@@ -133,6 +151,15 @@ SCENES: dict[str, tuple[Callable[[Bench], None], str]] = {
         r"|concept\.(option_none|mode_matrix|macro_local_scope|axis_number)|option\.param_write|MAX_AXIS|ALL_AXES"
         r"|EW_(LENGTH|NUMBER|ATTRIB|DATA|PROT|NOOPT)",
     ),
+    "mixed": (mixed.mixed, MIXED),
+    "products": (products.products, PRODUCTS),
+    "elsewhere": (
+        more.elsewhere,
+        r"ncparam\.(0000_0|132[01]|608.|3201_2|3202_.|3290_7)|cnc_dwnstart\.err\.EW_PROT|concept\.(power_mate_d_limit|protect_key|duplicate_program|handle_lifecycle|write_protection_programs|selected_program)"
+        r"|cnc_(freelibhndl|dwnstart|rdprogdir)|cnc_(download|dwnend)\.err\.EW_(DATA|PROT|RESET|FUNC)|units\..*|ODBDY\.alarm(\.bit[34])?|concept\.(tv_check|tool_offset_memory|position_contents)"
+        r"|cnc_(absolute|machine|rddynamic|rdmacror|rdtofs|wrtofs|wrparam|download|dwnend|wrmdiprog)(\.err\.EW_DATA)?|EW_(DATA|NOOPT)"
+        r"|cnc_wrparam\.err\.EW_NOOPT|option\.param_write|IODBMR\.data\..*|enum\.axis\.ALL_AXES|ALL_AXES|MAX_AXIS",
+    ),
     "handles": (
         macros.handles,
         r"concept\.power_mate_d_limit|EW_(?!NOPMC).*|cnc_(allclibhndl2?|freelibhndl)|concept\.(handle_lifecycle|return_convention|upload_session|download_session)|range\.node"
@@ -162,9 +189,15 @@ LOOK = re.compile(
 LOOKS = ("moves", "transfers", "rules", "directory", "execution", "mdi", "macros", *walk.WALKS)
 
 
+WORD = re.compile(r"\b[A-Z]{2,}\b")  # a code that stands in what is written down is claimed
+
+
 def _scene(name: str) -> Any:
     shown = re.compile(f"{SCENES[name][1]}|{LOOK.pattern}" if name in LOOKS else SCENES[name][1])
-    rows = [row for row in ROWS if shown.fullmatch(row.removeprefix("fanuc."))]
+    file = RECORDED / f"{name}.txt"
+    words = set(WORD.findall(file.read_text(encoding="utf-8"))) if file.exists() else set()
+    codes = {f"fanuc.{code.name}" for code in EW if short(code) in words}
+    rows = [row for row in ROWS if row in codes or shown.fullmatch(row.removeprefix("fanuc."))]
     return pytest.param(name, marks=pytest.mark.covers(*rows))
 
 

@@ -279,6 +279,7 @@ def test_nothing_is_aligned_to_four_bytes_but_lengths_of_that_packing_are_taken(
     assert fwlib.cnc_rdproginfo(handle, 1, 32)[0] == 0
 
 
+@pytest.mark.covers("fanuc.EW_LENGTH", "fanuc.concept.length_argument")
 @pytest.mark.covers("fanuc.cnc_rddynamic", "fanuc.cnc_rddynamic.err.EW_LENGTH")
 @pytest.mark.covers("fanuc.MAX_AXIS", "fanuc.common.MAX_AXIS2")
 def test_a_power_mate_d_has_two_axes_in_its_structures() -> None:

@@ -231,6 +231,9 @@ def test_parameters_of_bits_and_words_act() -> None:
     assert [control.parameters.value(1851, axis) for axis in (1, 2, 3)] == [7, -8, 9]
 
 
+@pytest.mark.covers(
+    "fanuc.ODBPARAIF.info.prm_no", "fanuc.ODBPARAIF.prm_type.bit0_1", "fanuc.concept.sparse_parameters",
+)  # fmt: skip
 @pytest.mark.covers("fanuc.cnc_rdparainfo")
 @pytest.mark.covers("fanuc.cnc_wrparas")
 @covers("ODBPARAIF.info.prm_type", "paramtype.two_word", "paramtype.word", "paramtype.byte", "paramtype.bit")
@@ -420,6 +423,10 @@ VALUES = {
 }  # fmt: skip
 
 
+@pytest.mark.covers(
+    "fanuc.cnc_rdtofs.err.EW_ATTRIB", "fanuc.cnc_rdtofs.err.EW_LENGTH", "fanuc.cnc_rdtofs.err.EW_NUMBER",
+    "fanuc.concept.length_argument", "fanuc.concept.tool_offset_memory",
+)  # fmt: skip
 @pytest.mark.parametrize("name", [pytest.param(each, marks=covers(each)) for each in CODES])
 @pytest.mark.covers("fanuc.concept.return_convention")
 def test_a_call_answers_the_code_of_the_manual(name: str) -> None:
