@@ -6,9 +6,10 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from functools import partial
 from itertools import groupby
 from pathlib import Path
-from typing import TypeAlias
+from typing import Any, TypeAlias
 
 from polycnc.cnc import ControlError, Script
+from polycnc.controllers.bosch import Pnc
 from polycnc.controllers.bosch.ncs import DATA_SERVICES, Coupling
 from polycnc.nc.cpl import BLOCKED, Box, CharacterField, Fault, Field
 from support.living_pnc import AXIS, SERVO, Living
@@ -135,6 +136,17 @@ class Bench(Living):
         """What was on the screen when it was written down last."""
         self.services = [*self._services()]
         self.system_data = [*self._system_data()]
+
+    def restart(self, **how: Any) -> None:
+        """Switch off and on, with other options of `Pnc` than before; nothing has been looked at."""
+        self.pnc.close()
+        self.pnc = Pnc(
+            self.folder,
+            self.folder / "machine.toml",
+            **{"channels": CHANNELS, "numbers": NUMBERS, "servo": True, **how},
+        )
+        self.coupling = Coupling(self.pnc.ncs, None, 1)
+        self._known.clear()
 
     # ------------------------------------------------------------------ what is written down
 
