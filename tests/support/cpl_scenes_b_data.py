@@ -170,9 +170,18 @@ def tables(b: Bench) -> None:
             4: (0, 1, 2, 48, 49, 145, -1),
             5: (1, 48, 147),
         }.get(table, (48, 145))
+        for group in groups:  # what is set replaces what was there
+            for sel in range(1, 9):
+                b.set("TC", 9.0, sel, group, table)
         b.set_all("TC", ((group / 4 + sel, (sel, group, table)) for group in groups for sel in range(10)))
         b.set_all("TC", ((0.5, (-sel, group, table)) for group in (48, 845, 247) for sel in range(1, 9)))
         b.ask_all("TC", ((sel, group, table) for group in groups for sel in range(-1, 10)))
+    named = [(name, sel) for name in ("K4", "K5", "K9.wzk", "") for sel in (1, -1, 2)]
+    b.set_all("TC", ((1.5 + sel, (sel, 3, name)) for name, sel in named))
+    b.ask_all("TC", ((sel, 3, name) for name in (4, 5, "K4", "K5", "K9.wzk") for sel in (1, 2)))
+    b.set_all("FXC", ((1.5, ("X", 58, name)) for name in ("V1", "V3", "A.npv", "V9")))
+    b.ask_all("FXC", (("X", 58, name) for name in (1, 2, 3, "V1", "V3", "A.npv")))
+    b.note("files", " ".join(sorted(each.name for each in b.folder.iterdir() if "store" not in each.name)))
     b.say("compensations: units")
     for unit in (-1, 0, 1, 2, 3):
         for group in groups:
