@@ -7,6 +7,7 @@ channel, whoever asks. After a wanted change: `--update-goldens`, and read the d
 from __future__ import annotations
 
 from fnmatch import fnmatchcase
+from itertools import zip_longest
 from pathlib import Path
 
 import pytest
@@ -58,4 +59,5 @@ def test_a_control_tells_what_is_written_down(
     file, found = RECORDED / f"{name}.txt", "\n".join([f"# {SCENES[name].__doc__}", *bench.lines, ""])
     if request.config.getoption("update_goldens"):
         file.write_text(found, encoding="utf-8")
-    assert found.splitlines() == file.read_text(encoding="utf-8").splitlines()
+    pairs = zip_longest(found.splitlines(), file.read_text(encoding="utf-8").splitlines())
+    assert not [f"found {one!r}, written {other!r}" for one, other in pairs if one != other][:9]

@@ -45,7 +45,7 @@ class Keyboard:
         """
         self._codes.append(_code(key))
 
-    def forget(self) -> None:
+    def clear(self) -> None:
         """Forget the keys that were pressed and nobody has asked for; those given at first stay."""
         while len(self._codes) > self._given:
             self._codes.pop()
