@@ -8,7 +8,7 @@ from functools import partial
 from polycnc.cnc import RunState
 from polycnc.controllers.bosch.ncs import Coupling, Mode
 from polycnc.controllers.bosch.system import Category, Signals, Tab
-from polycnc.nc.cpl import Box, Field
+from polycnc.nc.cpl import OMITTED, Box, Field
 from support.cpl_scenes_b import Bench, scene
 from support.cpl_scenes_b_asked import Orders
 
@@ -82,11 +82,84 @@ def second(b: Bench) -> None:
     pnc.reset()
     control.set_switches(machine_lock=True, channel=1)
     b.look("machine lock of channel 2", 2, both)
+    selections(b)
+
+
+def selections(b: Bench) -> None:
+    """Ask with every kind of axis, selection type and channel, in either channel."""
+    axes = (
+        -1,
+        0,
+        1,
+        3,
+        4,
+        5,
+        6,
+        9,
+        12,
+        13,
+        64,
+        1.0,
+        1.5,
+        True,
+        "X",
+        "V",
+        "W",
+        "C2",
+        "x",
+        "Q",
+        "",
+        "-X",
+        OMITTED,
+    )
+    kinds = (
+        (),
+        (0,),
+        (1,),
+        (2,),
+        (-1,),
+        (True,),
+        (OMITTED,),
+        (1, 1),
+        (1, 2),
+        (1, 3),
+        (0, 1),
+        (OMITTED, 2),
+        (1, True),
+    )
+    for channel in (1, 2):
+        b.say(f"selections of axes in channel {channel}")
+        for name in ("WPOS", "MPOS", "AXO", "CPOS", "COF", "DPC"):
+            b.ask_all(
+                name,
+                ((axis, *kind) for axis in axes for kind in kinds[: 13 if name in ("WPOS", "MPOS") else 7]),
+                channel,
+            )
+        for name in ("SPOS", "APOS"):
+            b.ask_all(name, ((axis,) for axis in axes), channel)
+        b.ask_all(
+            "SCL",
+            (
+                (which, *axis)
+                for which in range(-1, 4)
+                for axis in ((), (1,), (6, 0), (9, 0), ("X",), ("V", 1))
+            ),
+            channel,
+        )
+        b.ask_all("SD", ((22, axis, *kind) for axis in axes for kind in ((), (1,), (2,), (3,))), channel)
+        b.ask_all("SD", ((23, axis, *kind) for axis in axes for kind in ((), (2,))), channel)
+        b.ask_all(
+            "SD",
+            ((24, axis, *kind) for axis in axes for kind in ((1,), (2,), (2, 1), (1, 2), (3,), (0,))),
+            channel,
+        )
+        b.ask_all("SD", ((25, axis) for axis in axes), channel)
 
 
 WORDS = (
     "G0", "G5", "G2 X4 Y0 R3", "G3 X0 Y0 R3", "G70", "G71", "G91", "G90", "G63", "G66", "G95 S100 M3", "G94", "G93",
-    "G42 D3 G1 X50 F500", "G41 D3 X60", "G40 X70", "G7", "G6", "G18", "G19", "G17", "G20 X0 Y0", "G9", "G8", "G15",
+    "G42 D3 G1 X50 F500", "G42 D0 X8",
+    "G41 D3 X60", "G40 X70", "G7", "G6", "G18", "G19", "G17", "G20 X0 Y0", "G9", "G8", "G15",
     "G14", "G54", "G59", "G53", "G154", "G159", "G153", "G254", "G259", "G253", "G168 X1", "G268 X1", "G167", "G160",
     "G260", "G360", "G60 X1", "G67", "G38 X2", "G39", "G61", "G62", "G65", "G64", "G68", "G69", "G145", "G245", "G845",
     "G645",
@@ -356,6 +429,10 @@ def drives(b: Bench) -> None:
                 answer = b.call("SCS", axis, "S", n, error)
                 found.setdefault(f"{answer} ({error.value})", []).append(str(n))
             b.note(f"SCS({axis})", ", ".join(f"{answer}: {' '.join(each)}" for answer, each in found.items()))
+        for number in (51, 47, 40):
+            b.note(
+                f"SCSL {number}", f"{b.call('SCSL', 'X2', 'S', number, f'L{number}', error)} {error.value}"
+            )
         for name in ("LIST", "DIR"):
             (b.folder / "DIR").mkdir(exist_ok=True)
             error.value = None
@@ -364,6 +441,11 @@ def drives(b: Bench) -> None:
             path = b.folder / name
             b.note(name, path.read_text().replace("\n", " ") if path.is_file() else "no file")
     b.pnc.system.drives.locked = False
+    b.pnc.system.drives.read = lambda axis, ident: {("P", 9): 7.5, ("P", 32767): [1, axis]}.get(ident)
+    for kind in ("P", "S", "p", "", "PS"):
+        b.ask_all("SCS", ((2, kind, number) for number in (9, 8, 32767, 32768, -1)))
+    b.note("SCSL P", b.call("SCSL", 2, "P", 32767, "P"))
+    b.note("P", (b.folder / "P").read_text().replace("\n", " "))
 
 
 def kinds_of_tools(b: Bench) -> None:
