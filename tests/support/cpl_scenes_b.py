@@ -243,6 +243,7 @@ class Bench(Living):
             for channel in channels:
                 name = f"{service} {row.name} [{channel}]"
                 yield name, partial(self.data, service, channel, *EXTRA.get(service, ()))
+        yield "ready to start", lambda: " ".join(str(int(self.pnc.is_ready(channel))) for channel in (1, 2))
 
     # ------------------------------------------------------------------ system data and positions
 

@@ -144,9 +144,17 @@ def tables(b: Bench) -> None:
         b.ask_all("FXC", ((axis, 360, 0) for axis in names), channel=channel)
         b.ask_all("FXC", ((axis,) for axis in names), channel=channel)
     b.say("zero shifts: units, and what is added")
-    for unit in (-1, 0, 1, 2, 3):
-        b.set_all("FXC", ((2.0, (axis, 56, 1, unit)) for axis in ("X", "-X", "B", "-B")))
-        b.ask_all("FXC", ((axis, 56, 1, other) for axis in ("X", "B", 9) for other in (0, 2)))
+    for unit, codes in (
+        (-1, (56,)),
+        (0, (56,)),
+        (1, (56,)),
+        (2, (56, 54, 59, 154, 159, 254, 259, 160)),
+        (3, (56,)),
+    ):
+        b.set_all("FXC", ((2.0, (axis, code, 1, unit)) for code in codes for axis in ("X", "-X", "B", "-B")))
+        b.ask_all(
+            "FXC", ((axis, code, 1, other) for code in codes for axis in ("X", "B", 9) for other in (0, 2))
+        )
     b.set_all("FXC", [(each, ("X", 57, 1)) for each in (True, "7", 1e9, -1e9, 1e-9)])
     b.ask_all("FXC", [("X", 57, 1), ("X", 57), ("X", 57, "V1"), ("X", 57, "/none.npv"), ("X", 54.5, 1)])
     b.say("tables as files")

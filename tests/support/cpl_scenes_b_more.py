@@ -250,6 +250,10 @@ TYPED = (
 """What is typed into the four fields, one key after the other."""
 
 
+FOLDERS = ("", "usrfep/", "fep/")
+DIALOGS = '3080 00005 = 2\n3080 00006 = "SP", "Q900"\n3080 00007 = "other.dlg", "width.dlg"\n'
+
+
 def type_keys(b: Bench, keys: Sequence[str], channel: int = 1) -> None:
     """Press keys one by one, with a cycle between them."""
     for key in keys:
@@ -311,13 +315,15 @@ def in_front(b: Bench) -> None:
 def dialog_programs(b: Bench) -> None:
     """Call the dialog program of each area, in channel 1 and in the one that a parameter names."""
     b.say("dialog programs of the areas")
-    for folder in ("usrfep", "fep"):
+    for folder in FOLDERS[1:]:
         (b.folder / folder).mkdir()
-    places = {1: "", 2: "usrfep/", 3: "fep/", 4: "", 5: "usrfep/"}
-    for number, folder in places.items():
-        b.write(f"{folder}cpldlg0{number}.dlg", f"1 #N%={number * 7} : #C%=SD(8)\n")
-    b.write("fep/cpldlg02.dlg", "1 #N%=99\n")
-    for text in ("", '3080 00005 = 2\n3080 00006 = "SP", "Q900"\n3080 00007 = "other.dlg", "width.dlg"\n'):
+    for shift, text in enumerate(("", DIALOGS, "")):
+        for number in range(1, 6):
+            for place, folder in enumerate(FOLDERS):
+                path = f"{folder}cpldlg0{number}.dlg"
+                (b.folder / path).unlink(missing_ok=True)
+                if place >= (number + shift) % 3:  # the first one counts
+                    b.write(path, f"1 #N%={number * 10 + place} : #C%=SD(8)\n")
         b.write("macoda.dat", text)
         b.restart()
         b.note("areas", " ".join(b.pnc.dialogs))
@@ -337,7 +343,8 @@ def edited_blocks(b: Bench) -> None:
     read = "10 INP#(0,W,N%,B?,D!)\n20 #W=W : #N%=N% : #B?=B? : #D!=D!\n"
     b.write("width.dlg", read + '30 PRN#(0,"N10 Q900[",W,",",N%*2,"]")\n40 PRN#(0,"SECOND")')
     b.write("other.dlg", read + '30 PRN#(0,"  other";)\n31 PRN#(0,"##.#",2.5)')
-    b.write("usrfep/cpldlg05.dlg", read)
+    b.write("cpldlg05.dlg", read)
+    b.write("macoda.dat", DIALOGS)
     b.restart()
     for text in EDITED:
         block = b.pnc.edit_block(text)
@@ -394,6 +401,14 @@ def parameters(b: Bench) -> None:
 def settings(b: Bench) -> None:
     """Parameters of every number, drives, kinds of tools, errors of each category, programs that are selected again."""
     b.write("macoda.dat", "")
+    machine = b.folder / "machine.toml"
+    for name, limits in (
+        ("W", "mm = [-90.0, -12.5]\nhome_mm = -20.5"),
+        ("V", "mm = [-1.0, 812.25]"),
+        ("C2", "deg = [-720.5, 360.5]"),
+    ):
+        head = f'name = "{name}"\n'
+        machine.write_text(machine.read_text().replace(head, f"{head}soft_limits_{limits}\n"))
     b.restart()
     b.run("N1 G1 X1.2345 B-30 F6000\nN2 M0", 400)
     b.run("N1 G1 X2=3 F6000\nN2 M0", 400, 2)
@@ -419,7 +434,7 @@ def drives(b: Bench) -> None:
     """Read parameters and lists of drives, with their service channel locked and not."""
     b.say("drives")
     numbers = (17, 30, 40, 47, 51, 140, 141, 187, 189, 999)
-    for locked in (False, True):
+    for locked in (True, False, True):  # at first nothing has been read
         b.pnc.system.drives.locked = locked
         error = Box("E%", "I", None)
         for axis in (1, 5, 8, 3, 12, "X", "B", "X2", "W", "Q"):
@@ -509,6 +524,24 @@ def selected_again(b: Bench) -> None:
         b.note(str(order), f"{given.give(order)}: {given.state()}, selected again {b.data(70, 2)}")
         b.pnc.advance(300)
         b.note("  later", given.state())
+    b.say("searched, then started")
+    for ends in (
+        ("N2", "N2"),
+        ("N2",),
+        ("", "N2"),
+        ("N4",),
+        ("N9", "N2"),
+        ("N2", "N9"),
+        ("N4", "N2"),
+        ("N9", "N8"),
+    ):
+        b.note(
+            str(ends),
+            " ".join(given.give(order) for order in ((5, 2), (4, "PART", "", "", 0), (3, *ends), (6,))),
+        )
+        for cycles in (5, 300):
+            b.pnc.advance(cycles)
+            b.note("  state", given.state())
 
 
 def coupling(b: Bench) -> None:
