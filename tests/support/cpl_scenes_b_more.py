@@ -158,13 +158,12 @@ def selections(b: Bench) -> None:
 
 WORDS = (
     "G0", "G5", "G2 X4 Y0 R3", "G3 X0 Y0 R3", "G70", "G71", "G91", "G90", "G63", "G66", "G95 S100 M3", "G94", "G93",
-    "G42 D3 G1 X50 F500", "G42 D0 X8",
-    "G41 D3 X60", "G40 X70", "G7", "G6", "G18", "G19", "G17", "G20 X0 Y0", "G9", "G8", "G15",
-    "G14", "G54", "G59", "G53", "G154", "G159", "G153", "G254", "G259", "G253", "G168 X1", "G268 X1", "G167", "G160",
-    "G260", "G360", "G60 X1", "G67", "G38 X2", "G39", "G61", "G62", "G65", "G64", "G68", "G69", "G145", "G245", "G845",
-    "G645",
-    "G146", "G147", "G847", "G114", "G115", "G92 X1", "G96 S50 M4", "G97 S200 M3", "G196 S40 M3", "H3", "H48", "M19",
-    "M8", "G73 X1", "G4 F0.01 M9",
+    "G42 D3 G1 X50 F500", "G42 D0 X8", "G41 D3 X60", "G40 X70", "G7", "G6", "G18", "G19", "G17", "G20 X0 Y0", "G9",
+    "G8", "G15", "G14", "G54", "G59", "G53", "G154", "G159", "G153", "G254", "G259", "G253", "G168 X1", "G268 X1",
+    "G167", "G160", "G260", "G360", "G60 X1", "G67", "G38 X2", "G39", "G61", "G62", "G65", "G64", "G68", "G69",
+    "G145", "G245", "G845", "G645", "G146", "G147", "G847", "G114", "G115", "G92 X1", "G96 S50 M4", "G97 S200 M3",
+    "G196 S40 M3", "D3", "H3", "H48", "M19", "M8", "G73 X1", "G70 G95 F0.5 S60 M3", "G70 G93 F2", "G70 G96 S90 M3",
+    "G70 G54 G160", "G70 G145", "G70 G147 H3", "G4 F0.01 M9",
 )  # fmt: skip
 OF_CHANNEL_2 = (
     "G0", "G70", "G91", "G5", "G95 S60 M4", "G18", "G55", "G156", "G257", "G60 X2=1", "G38 X2=2", "G345", "G447",
@@ -235,6 +234,10 @@ EDITED = (
     "",
     "Q901[1,2]",
     "P SPX[1]",
+    "Q900[1.,-4.5,FALSE,.5]",
+    "Q900[+3,-7,true,-.25]",
+    "Q900[ , ,X,1e3]",
+    "Q900[--1,4.,FALSEX,5",
 )
 
 
@@ -483,7 +486,7 @@ def categories(b: Bench) -> None:
     errors = b.pnc.system.errors
     for category in Category:
         for channel in (1, 2, -1):
-            errors.add(2000 + 10 * category + channel, channel, category, f"category {category.name}")
+            errors.add(120000 + 10 * category + channel, channel, category, f"category {category.name}")
     for channel in (-1, 1, 2):
         for kind in range(12):
             field = Field("I", (12, 3))

@@ -286,7 +286,7 @@ def waits(b: Bench) -> None:
     pnc.reset()
     pnc.advance(20)
     pnc.select_mode(Mode.AUTOMATIC)
-    for axis, channel in (("X2", None), ("V", 1), ("W", 2), ("C2", None), ("W", 1), ("C2", 1)):
+    for axis, channel in (("X2", None), ("V", 1), ("W", 2), ("X2", 2), ("C2", None), ("W", 1), ("C2", 1)):
         pnc.transfer_axis(axis, channel)
         b.look(f"axis {axis} goes to channel {channel}", 1)
     b.pnc.control.set_overrides(feed=0.5, channel=0)
