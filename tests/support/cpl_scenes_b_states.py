@@ -122,6 +122,9 @@ def modes(b: Bench) -> None:
     control.select_mode(ControlMode.HANDLE)
     control.handwheel("U", -3, 0.01)
     b.look("three pulses of U back", 15)
+    for selected in ControlMode:
+        control.select_mode(selected)
+        b.note(f"{selected.name} at the control within", f"{b.data(31, 1)} {b.data(31, 2)}")
     pnc.select_mode(Mode.REFERENCE)
     b.look("reference", 1)
     control.reference("Y")
