@@ -459,7 +459,8 @@ def drives(b: Bench) -> None:
             path = b.folder / name
             b.note(name, path.read_text().replace("\n", " ") if path.is_file() else "no file")
     b.pnc.system.drives.locked = False
-    b.pnc.system.drives.read = lambda axis, ident: {("P", 9): 7.5, ("P", 32767): [1, axis]}.get(ident)
+    values: dict[tuple[str, int], float | list[float]] = {("P", 9): 7.5, ("P", 32767): [1, 2]}
+    b.pnc.system.drives.read = lambda axis, ident: values.get(ident)
     for kind in ("P", "S", "p", "", "PS"):
         b.ask_all("SCS", ((2, kind, number) for number in (9, 8, 32767, 32768, -1)))
     b.note("SCSL P", b.call("SCSL", 2, "P", 32767, "P"))
