@@ -6,9 +6,10 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from functools import partial
 from itertools import groupby
 from pathlib import Path
-from typing import TypeAlias
+from typing import Any, TypeAlias
 
 from polycnc.cnc import ControlError, Script
+from polycnc.controllers.bosch import Pnc
 from polycnc.controllers.bosch.ncs import DATA_SERVICES, Coupling
 from polycnc.nc.cpl import BLOCKED, Box, CharacterField, Fault, Field
 from support.living_pnc import AXIS, SERVO, Living
@@ -136,6 +137,17 @@ class Bench(Living):
         self.services = [*self._services()]
         self.system_data = [*self._system_data()]
 
+    def restart(self, **how: Any) -> None:
+        """Switch off and on, with other options of `Pnc` than before; nothing has been looked at."""
+        self.pnc.close()
+        self.pnc = Pnc(
+            self.folder,
+            self.folder / "machine.toml",
+            **{"channels": CHANNELS, "numbers": NUMBERS, "servo": True, **how},
+        )
+        self.coupling = Coupling(self.pnc.ncs, None, 1)
+        self._known.clear()
+
     # ------------------------------------------------------------------ what is written down
 
     def say(self, what: str) -> None:
@@ -231,6 +243,7 @@ class Bench(Living):
             for channel in channels:
                 name = f"{service} {row.name} [{channel}]"
                 yield name, partial(self.data, service, channel, *EXTRA.get(service, ()))
+        yield "ready to start", lambda: " ".join(str(int(self.pnc.is_ready(channel))) for channel in (1, 2))
 
     # ------------------------------------------------------------------ system data and positions
 

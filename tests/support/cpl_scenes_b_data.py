@@ -144,9 +144,17 @@ def tables(b: Bench) -> None:
         b.ask_all("FXC", ((axis, 360, 0) for axis in names), channel=channel)
         b.ask_all("FXC", ((axis,) for axis in names), channel=channel)
     b.say("zero shifts: units, and what is added")
-    for unit in (-1, 0, 1, 2, 3):
-        b.set_all("FXC", ((2.0, (axis, 56, 1, unit)) for axis in ("X", "-X", "B", "-B")))
-        b.ask_all("FXC", ((axis, 56, 1, other) for axis in ("X", "B", 9) for other in (0, 2)))
+    for unit, codes in (
+        (-1, (56,)),
+        (0, (56,)),
+        (1, (56,)),
+        (2, (56, 54, 59, 154, 159, 254, 259, 160)),
+        (3, (56,)),
+    ):
+        b.set_all("FXC", ((2.0, (axis, code, 1, unit)) for code in codes for axis in ("X", "-X", "B", "-B")))
+        b.ask_all(
+            "FXC", ((axis, code, 1, other) for code in codes for axis in ("X", "B", 9) for other in (0, 2))
+        )
     b.set_all("FXC", [(each, ("X", 57, 1)) for each in (True, "7", 1e9, -1e9, 1e-9)])
     b.ask_all("FXC", [("X", 57, 1), ("X", 57), ("X", 57, "V1"), ("X", 57, "/none.npv"), ("X", 54.5, 1)])
     b.say("tables as files")
@@ -170,9 +178,18 @@ def tables(b: Bench) -> None:
             4: (0, 1, 2, 48, 49, 145, -1),
             5: (1, 48, 147),
         }.get(table, (48, 145))
+        for group in groups:  # what is set replaces what was there
+            for sel in range(1, 9):
+                b.set("TC", 9.0, sel, group, table)
         b.set_all("TC", ((group / 4 + sel, (sel, group, table)) for group in groups for sel in range(10)))
         b.set_all("TC", ((0.5, (-sel, group, table)) for group in (48, 845, 247) for sel in range(1, 9)))
         b.ask_all("TC", ((sel, group, table) for group in groups for sel in range(-1, 10)))
+    named = [(name, sel) for name in ("K4", "K5", "K9.wzk", "") for sel in (1, -1, 2)]
+    b.set_all("TC", ((1.5 + sel, (sel, 3, name)) for name, sel in named))
+    b.ask_all("TC", ((sel, 3, name) for name in (4, 5, "K4", "K5", "K9.wzk") for sel in (1, 2)))
+    b.set_all("FXC", ((1.5, ("X", 58, name)) for name in ("V1", "V3", "A.npv", "V9")))
+    b.ask_all("FXC", (("X", 58, name) for name in (1, 2, 3, "V1", "V3", "A.npv")))
+    b.note("files", " ".join(sorted(each.name for each in b.folder.iterdir() if "store" not in each.name)))
     b.say("compensations: units")
     for unit in (-1, 0, 1, 2, 3):
         for group in groups:

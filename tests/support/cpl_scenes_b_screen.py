@@ -12,11 +12,13 @@ from support.cpl_scenes_b import Bench, Place, scene
 from support.cpl_scenes_b_asked import show
 
 _ = OMITTED
+_ROWS = ("000000 00ff00 0000ff", "ff0000 ffffff ffff00")  # from below, as bitmaps are
 BITMAP = (
-    b"BM" + struct.pack("<IHHI", 54 + 8 * 2, 0, 0, 54) + struct.pack("<IiiHHIIiiII", 40, 2, 2, 1, 24, 0, 16, 0, 0, 0, 0)
-    + bytes((0, 0, 255, 255, 255, 255, 0, 0, 0, 255, 0, 0, 0, 255, 0, 0))
+    b"BM" + struct.pack("<IHHI", 54 + 12 * 2, 0, 0, 54)
+    + struct.pack("<IiiHHIIiiII", 40, 3, 2, 1, 24, 0, 24, 0, 0, 0, 0)
+    + b"".join(b"".join(bytes.fromhex(each)[::-1] for each in row.split()).ljust(12, b"\0") for row in _ROWS)
 )  # fmt: skip
-"""Red and white above, blue and green above black, from below as bitmaps are."""
+"""Red, white and yellow above black, green and blue."""
 
 
 FORMATS = (

@@ -122,6 +122,9 @@ def modes(b: Bench) -> None:
     control.select_mode(ControlMode.HANDLE)
     control.handwheel("U", -3, 0.01)
     b.look("three pulses of U back", 15)
+    for selected in ControlMode:
+        control.select_mode(selected)
+        b.note(f"{selected.name} at the control within", f"{b.data(31, 1)} {b.data(31, 2)}")
     pnc.select_mode(Mode.REFERENCE)
     b.look("reference", 1)
     control.reference("Y")
@@ -286,7 +289,7 @@ def waits(b: Bench) -> None:
     pnc.reset()
     pnc.advance(20)
     pnc.select_mode(Mode.AUTOMATIC)
-    for axis, channel in (("X2", None), ("V", 1), ("W", 2), ("W", 1), ("C2", None), ("C2", 1)):
+    for axis, channel in (("X2", None), ("V", 1), ("W", 2), ("X2", 2), ("C2", None), ("W", 1), ("C2", 1)):
         pnc.transfer_axis(axis, channel)
         b.look(f"axis {axis} goes to channel {channel}", 1)
     b.pnc.control.set_overrides(feed=0.5, channel=0)

@@ -746,7 +746,8 @@ CATEGORIES = {
 )
 def test_the_overview_lists_what_the_control_answers(category: str, numbers: str) -> None:
     listed = [int(number) for number in numbers.split()]
-    assert list(OVERVIEW[category])[: len(listed)] == listed
+    beyond = [30, 87] if category == "Miscellaneous" else []  # which the manual's list leaves out
+    assert list(OVERVIEW[category]) == [*listed, *beyond]
     asking = Asking()
     asking.image.customer[1, 1] = (1, 2)
     for number in listed:

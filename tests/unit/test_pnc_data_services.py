@@ -183,7 +183,8 @@ def test_the_control_answers_whatever_the_overview_lists(lagging: Living) -> Non
         "Miscellaneous": [28, 46, 42, 68, 69, 70],
     }
     for category, numbers in listed.items():
-        assert list(OVERVIEW[category])[: len(numbers)] == numbers
+        beyond = [30, 87] if category == "Miscellaneous" else []  # which the manual's list leaves out
+        assert list(OVERVIEW[category]) == [*numbers, *beyond]
         for number in numbers:
             answer = lagging.read(number, 1, 1, 1, 51)
             assert answer == 102 if number in (34, 42) else isinstance(answer, list | str), number

@@ -392,7 +392,7 @@ def test_tables_of_shifts_have_64_columns_and_external_ones_8(wide: Living) -> N
     found = told(
         wide,
         f'1 FXCR(0,"W.npv")\n2 {more}\n3 FXC(64,54,"W.npv")=5.5 : FXC(-64,54,"W.npv")=0.25 : FXC(63,59,"W.npv",2)=1\n'
-        '4 FXC(8,160,0)=3 : FXC(-8,160,0)=0.5 : FXC("C",160,0)=2\n'
+        '4 FXC(1,160,0)=40 : FXC(8,160,0)=3 : FXC(-8,160,0)=0.5 : FXC("C",160,0)=2\n'
         '5 FXCR("INCH.npv","LIKE.npv",1) : FXC(-1,54,"W.npv")=-4',
         *(
             'FXC(64,54,"W.npv")',

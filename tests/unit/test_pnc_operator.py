@@ -87,6 +87,12 @@ def test_a_reset_ends_the_wait_and_what_was_typed_is_lost(pnc: Pnc) -> None:
     pnc.advance(5)
     pnc.reset()
     pnc.advance(5)
+    start(pnc, "N10 G1 X30 F600")
+    for key in ("8", "ENTER"):
+        pnc.press(key)
+    pnc.advance(5)
+    pnc.reset()
+    pnc.advance(100)
     start(pnc, INPUT)
     pnc.advance(5)
     pnc.press("ENTER")

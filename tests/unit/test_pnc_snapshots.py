@@ -2,13 +2,19 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Iterator
+from copy import copy
+from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import pytest
 
 from polycnc.cnc import ControlSnapshot, RunState
 from polycnc.controllers.bosch import Pnc
+from polycnc.controllers.bosch.ncs import Coupling, Mode
+from polycnc.controllers.bosch.system import Signals
 from polycnc.machine import SnapshotError
 from support.programs import MILL
 
@@ -104,3 +110,82 @@ def test_what_is_open_is_said(pnc: Pnc, tmp_path: Path, statement: str, what: st
     assert pnc.run_state(1) is RunState.ACTIVE, pnc.status().alarms
     with pytest.raises(SnapshotError, match=what):
         pnc.snapshot()
+
+
+WRONG: tuple[Any, ...] = (None, True, -1, 1.5, 10**40, "x", "", [], [1], {}, {"1": []}, [[]])
+RIGHT = {
+    *((way, "[]") for way in ("shown", "signals", "errors")),
+    *((way, "{}") for way in ("", "selected.0", "selected.1")),
+    *(("selected.1.1", text) for text in ("x", "")),
+    ("shown.0.0", str(10**40)),
+    ("shown.0.3", "True"),
+    *((f"errors.{n}.0", str(number)) for n in (0, 1) for number in (-1, 10**40)),
+    *((f"errors.{n}.1", "-1") for n in (0, 1)),
+    *((f"errors.{n}.3", text) for n in (0, 1) for text in ("x", "")),
+    *((f"errors.{n}.4", "None") for n in (0, 1)),
+}
+"""What is right where it stands."""
+
+
+def places_in(value: object) -> Iterator[tuple[Any, ...]]:
+    """Return the way to every part of plain data, the whole first."""
+    yield ()
+    parts = value.items() if isinstance(value, dict) else enumerate(value) if isinstance(value, list) else ()
+    for key, part in parts:
+        for way in places_in(part):
+            yield key, *way
+
+
+def with_part(data: Any, way: tuple[Any, ...], value: object) -> Any:
+    """Return plain data with one part exchanged."""
+    if not way:
+        return value
+    changed = copy(data)
+    changed[way[0]] = with_part(data[way[0]], way[1:], value)
+    return changed
+
+
+def test_a_file_with_something_wrong_beside_the_programs_changes_nothing(pnc: Pnc) -> None:
+    pnc.select_mode(Mode.SINGLE_BLOCK)
+    assert Coupling(pnc.ncs, None, 1).mcops(4, 1, "GONE", "", "", 0) == 0
+    pnc.control.put_alarm("function_failed", detail="M8")
+    pnc.system.interface.set_bit(Signals.AXIS_INPUTS, 64, 63, True)
+    kept = pnc.snapshot()
+    data = kept.data()
+    told = data["beside"]
+    assert told["selected"] == [{"1": Mode.SINGLE_BLOCK}, {"1": "GONE"}]
+    assert len(told["signals"]) >= 1 <= len(told["errors"])
+    pnc.advance(7)
+    before, taken = pnc.snapshot(), set()
+    for way in places_in(told):
+        for value in WRONG:
+            changed = with_part(told, way, value)
+            try:
+                pnc.restore(replace(kept, beside=json.dumps({**data, "beside": changed})))
+            except SnapshotError:
+                continue
+            taken.add((".".join(map(str, way)), str(value)))
+            pnc.restore(before)
+        assert pnc.snapshot() == before, way
+    assert taken == RIGHT
+
+
+@pytest.mark.parametrize(
+    ("way", "value"),
+    [
+        *(("relative_zero", each) for each in ([], [1.0])),
+        *((f"manual.{each}", []) for each in ("motions", "referenced", "feed_overrides", "rapid_overrides")),
+        *((f"timers.{each}", {}) for each in ("base_s", "cycles")),
+        ("channels.0.lent", [[3, 1.0]]),
+        ("channels", []),
+    ],
+)
+def test_a_file_of_other_axes_or_timers_changes_nothing(pnc: Pnc, way: str, value: object) -> None:
+    kept = started(pnc).snapshot()
+    pnc.advance(30)
+    before = pnc.snapshot()
+    parts = [int(each) if each.isdecimal() else each for each in way.split(".")]
+    changed = json.dumps(with_part(kept.data(), tuple(parts), value))
+    with pytest.raises(SnapshotError, match="damaged"):
+        pnc.restore(replace(kept, beside=changed))
+    assert pnc.snapshot() == before

@@ -32,8 +32,12 @@ class Beside(Protocol):
     def save(self) -> dict[str, Any]:
         """Return it as plain data."""
 
-    def restore(self, data: Mapping[str, Any]) -> None:
-        """Go back to what was saved, or to nothing for no data."""
+    def restore_point(self, data: Mapping[str, Any]) -> Callable[[], None]:
+        """Return what goes back to what was saved, or to nothing for no data; nothing of it can fail any more.
+
+        Raises:
+            SnapshotError: It is not what was saved; nothing has changed.
+        """
 
 
 @dataclass(slots=True)

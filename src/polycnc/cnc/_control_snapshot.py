@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict, dataclass, field, fields
 from typing import Any, Self
 
 from pydantic import TypeAdapter, ValidationError
@@ -18,7 +18,7 @@ from polycnc.cnc._program_run import ProgramRun
 from polycnc.cnc._run_snapshot import RunSnapshot, file_text
 from polycnc.cnc._spindle import SpindleMotion
 from polycnc.cnc._status import Emergency
-from polycnc.cnc._timers import TimersState
+from polycnc.cnc._timers import Timer, TimersState
 from polycnc.machine import Snapshot, SnapshotError, damaged_snapshot, described
 from polycnc.nc import IncomingText, ProgramText
 
@@ -154,8 +154,6 @@ def restore_state(of: ControlParts, moment: ControlMoment, runs: tuple[ProgramRu
     of.functions.restore((n, kept.waiting) for n, kept in enumerate(moment.channels))
     for name in _PARTS:
         getattr(of, name).restore(getattr(moment, name))
-    if of.beside is not None:
-        of.beside.restore(moment.beside)
 
 
 def _of_channel(channel: ControlChannel, waiting: tuple[int, ...]) -> ChannelMoment:
@@ -166,6 +164,22 @@ def _of_channel(channel: ControlChannel, waiting: tuple[int, ...]) -> ChannelMom
         lent=channel.own_axes.taken,
         waiting=waiting,
         **{name: getattr(channel, name) for name in _AS_IT_IS},
+    )
+
+
+def _fits(of: ControlParts, moment: ControlMoment) -> bool:
+    """Tell whether a moment has the channels, axes and timers of a control."""
+    manual, timers, axes = moment.manual, moment.timers, len(of.relative_zero)
+    of_axes = (
+        moment.relative_zero,
+        *(getattr(manual, each.name) for each in fields(manual) if each.name != "wheel"),
+    )
+    lent = {axis for channel in moment.channels for axis, _ in channel.lent or ()}
+    return (
+        len(moment.channels) == len(of.channels)
+        and all(len(each) == axes for each in of_axes)
+        and lent <= set(range(axes))
+        and all(each.keys() == set(Timer) for each in (timers.base_s, timers.cycles))
     )
 
 
@@ -229,16 +243,19 @@ class Keeping:
         snapshot.check("control", self._made_from, ())
         moment: ControlMoment = snapshot.moment()
         runs = snapshot.runs or (None,) * len(self._of.channels)
-        if len(runs) != len(self._of.channels) or len(moment.channels) != len(self._of.channels):
+        if len(runs) != len(self._of.channels) or not _fits(self._of, moment):
             raise damaged_snapshot(device="control")
         back = [
             channel.runs.restore_point(run, self._text)
             for channel, run in zip(self._of.channels, runs, strict=True)
         ]
+        beside = None if self._of.beside is None else self._of.beside.restore_point(moment.beside)
         self._of.machine.restore(snapshot.machine)
         self._of.edits.close_all()
         self._time.raised = ControlEvent(moment.raised)
         restore_state(self._of, moment, tuple(each() for each in back))
+        if beside is not None:
+            beside()
         self._time.forget()
 
     @property

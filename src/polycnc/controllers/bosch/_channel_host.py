@@ -257,7 +257,13 @@ class ChannelHost:
     def end_program(self) -> None:
         """Do the same in a device, where a program has ended by itself, by an error or a reset."""
         if self._in_device:
+            self.keyboard.clear()
             self.finish()
+
+    def release(self) -> None:
+        """Forget what is asked of another control, and the keys that nobody has asked for."""
+        self.keyboard.clear()
+        self.coupling.release()
 
     def variables(self) -> dict[str, object]:
         """Return permanent and global variables as plain values, by name."""

@@ -210,11 +210,10 @@ class DeviceChannels:
         modes = {str(number): int(mode) for number, mode in self._modes.items()}
         return modes, {str(number): name for number, name in self._missing.items()}
 
-    def restore(self, saved: tuple[dict[str, int], dict[str, str]]) -> None:
+    def restore(self, modes: dict[int, BoschMode], missing: dict[int, str]) -> None:
         """Go back to modes and missing programs."""
-        modes, missing = saved
-        self._modes = {int(number): BoschMode(mode) for number, mode in modes.items()}
-        self._missing = {int(number): name for number, name in missing.items()}
+        self._modes = modes
+        self._missing = missing
 
     def select_mode(self, numbers: Sequence[int], mode: BoschMode) -> None:
         """Note the mode that was selected: several are one for the control within."""

@@ -259,7 +259,7 @@ class Pnc:
         for number in self.system.axes.channels if channel is None else (channel,):
             self.system.forget_errors(number)
             self.system.reset_signal(number, True)
-            self.hosts[number - 1].coupling.release()
+            self.hosts[number - 1].release()
             self.hosts[number - 1].buffer = None
             self._channels.found(number)
 

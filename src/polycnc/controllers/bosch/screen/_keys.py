@@ -33,6 +33,7 @@ class Keyboard:
 
     def __init__(self, keys: Iterable[str] = (), *, live: bool = False) -> None:
         self._codes = deque(_code(key) for key in keys)
+        self._given = len(self._codes)
         self._live = live
         self._in_vain = 0
 
@@ -45,8 +46,9 @@ class Keyboard:
         self._codes.append(_code(key))
 
     def clear(self) -> None:
-        """Forget the keys that nobody has asked for."""
-        self._codes.clear()
+        """Forget the keys that were pressed and nobody has asked for; those given at first stay."""
+        while len(self._codes) > self._given:
+            self._codes.pop()
 
     def poll(self) -> int:
         """Return the next key that was pressed, 0 if there is none.
@@ -55,6 +57,7 @@ class Keyboard:
             Fault: A program goes on asking although no key is left.
         """
         if self._codes:
+            self._given = max(self._given - 1, 0)
             return self._codes.popleft()
         self._in_vain += not self._live
         if self._in_vain > _PATIENCE:

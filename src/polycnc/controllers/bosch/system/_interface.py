@@ -64,6 +64,14 @@ class Interface:
         """Return the signals as plain data: group, index, bits."""
         return [(int(group), index, word) for (group, index), word in self._words.items()]
 
+    def has(self, group: int, index: int, word: int) -> bool:
+        """Tell whether there are signals of this group and index, and all bits of a word among them."""
+        return (
+            group in range(len(self.sizes))
+            and index in self._indices[group]
+            and word >> self.sizes[group] == 0
+        )
+
     def restore(self, words: Iterable[Sequence[int]]) -> None:
         """Go back to signals."""
         self._words = {(group, index): word for group, index, word in words}
