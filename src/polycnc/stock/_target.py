@@ -20,7 +20,7 @@ Floats = npt.NDArray[np.float64]
 TOLERANCE_MM = 0.02
 """How far a part may differ from its target where that is not said."""
 TOLERANCES_MM = (0.001, 10.0)
-MOST_POINTS = 12_000_000
+MOST_POINTS = 8_000_000
 
 
 @dataclass(frozen=True, slots=True)
@@ -69,13 +69,13 @@ class Target:
         triangles = np.ascontiguousarray(surface.vertices[surface.faces])
         self._grid = stock.grid._replace(z=np.full_like(stock.grid.z, stock.grid.bottom))
         draw(triangles, self._grid.x0, self._grid.y0, self._grid.cell_mm, self._grid.z)
-        count = sample(triangles, stock.cell_mm, tolerance_mm, np.zeros((0, 4)))
+        count = sample(triangles, stock.cell_mm, tolerance_mm, np.zeros((0, 6)))
         if count > MOST_POINTS:
             raise UsageError(
                 f"the surface in '{path}' has {count:,} points {stock.cell_mm:g} mm apart",
                 hint=f"At most {MOST_POINTS:,} are looked at: choose a coarser resolution.",
             )
-        points = np.zeros((count, 4))
+        points = np.zeros((count, 6))
         sample(triangles, stock.cell_mm, tolerance_mm, points)
         self._points, self._starts = _by_cell(points, self._grid)
 
