@@ -14,6 +14,7 @@ from polycnc.kernel import IS_RAPID, LEADING, TIME_S
 from polycnc.machine import MachineConfig, ToolConfig
 from polycnc.nc import CONTEXT_SHIFT, BlockRecords
 from polycnc.runner._blocks import BlockTable, ExecutedBlock
+from polycnc.runner._known_places import NOWHERE, without_doubtful, without_homing
 from polycnc.runner._machined import Collision, IdleFeed, Machined
 from polycnc.runner._rotation import tip_and_axis, turning_axes
 from polycnc.runner._stock_tools import hand_tool, said_form, tools_of
@@ -38,10 +39,6 @@ from polycnc.stock import (
 )
 
 Floats = npt.NDArray[np.float64]
-
-
-_NOWHERE = -1
-"""The number of no tool."""
 
 
 class MachiningCollector:
@@ -120,7 +117,7 @@ class MachiningCollector:
         before = place[:1] if self._last_place is None else self._last_place
         self._last_place = place[-1:].copy()
         still = np.all(np.concatenate((before, place[:-1])) == place, axis=1)
-        return np.where((rapid | still) & (np.arange(len(tool)) < first), _NOWHERE, tool)
+        return np.where((rapid | still) & (np.arange(len(tool)) < first), NOWHERE, tool)
 
     def _with_hand_tool(
         self, course: Rows, tools: Mapping[int, Tool | Insert]
@@ -158,6 +155,10 @@ class MachiningCollector:
         """
         course, (x, y, z) = self._course.rows(), self._zero_mm()
         course = replace(course, tip=course.tip - (x, y, z))
+        if z == 0.0 and not self._turned:
+            course = without_homing(
+                course, course.tip[:, 0 if self._lathe else 2], self._table.blocks(), self.texts
+            )
         form, self._said = said_form(form, self.texts)
         if self._lathe:
             given = turning_tools_of(self._config, self.texts) if tools is None else tools
@@ -200,9 +201,14 @@ class MachiningCollector:
     ) -> Machined:
         blocks = self._table.blocks()
         removed = np.zeros(len(blocks))
-        known = tally.by_block_mm3[: len(blocks)]
-        removed[: len(known)] = known
+        counted = tally.by_block_mm3[: len(blocks)]
+        removed[: len(counted)] = counted
         missed = "" if removed.any() or tally.unknown_tools else self._missed(stock, course)
+        contacts = tally.contacts.all()
+        known = without_doubtful(contacts, course, tally.unknown_tools)
+        doubt = (
+            f"{len(contacts) - len(known)} collisions are not reported: tools of unknown shape have cut there"
+        )
         return Machined(
             stock=stock,
             blocks=blocks,
@@ -213,7 +219,7 @@ class MachiningCollector:
                 Collision(
                     each.kind, at.program, at.line, self._place(at), each.t_s, each.place, each.depth_mm
                 )
-                for each in tally.contacts.all()
+                for each in known
                 for at in [blocks[each.block]]
             ],
             idle=[
@@ -227,6 +233,7 @@ class MachiningCollector:
                 f"stock: {stock}, {stock.cell_mm:.4g} mm a cell{self._said}",
                 *self._notes,
                 *map(self._cuts_nothing, sorted(tally.unknown_tools)),
+                *([doubt] if len(known) < len(contacts) else []),
                 *([missed] if missed else []),
             ],
             form=form,
