@@ -105,7 +105,21 @@ G53 Z0
 G28 G91 X0 Y0
 G90 M30
 """
+AROUND = f"""{MILL}T1 M6
+G0 X-4 Y-4 Z30
+Z2
+G1 Z-3 F250
+X60 F800
+Y44
+X-4
+Y-4
+G0 Z30
+M30
+"""
 PROGRAMS = {
+    "around": AROUND,
+    "around from a side": AROUND.replace("X-4 Y-4 Z30", "X20 Y-4 Z30").replace("Y-4\nG0", "Y-4\nX20\nG0"),
+    "around from beside": AROUND.replace("X-4 Y-4 Z30", "X-9 Y-4 Z30").replace("G1 Z-3 F250", "Z-3\nG1"),
     "contour": CONTOUR, "pocket": POCKET, "holes": HOLES, "zigzag": ZIGZAG, "shaft": SHAFT, "homing": HOMING,
     "shaft homing": SHAFT.replace("G0 X60 Z50", "G28 U0 W0").replace("G0 X60\nZ50", "G28 U0 W0"),
     "shaft, unknown tool": SHAFT.replace("(T1 CNMG120408 roughing)", ""),
@@ -124,6 +138,8 @@ FAULTS = {
     "a bar that is turned at rapid": ("shaft", "X24\nG1 Z-25", "X24\nG0 Z-25", [("rapid", 14)]),
     "a rapid before the way home": ("homing", "G0 Z30\nG53", "G0 Z7\nG53", [("rapid", 13)]),
     "a groove at rapid after a way home": ("shaft homing", "G1 X26 F0.4", "G0 X26", [("rapid", 19)]),
+    "a way down at rapid at a corner": ("around", "G1 Z-3 F250\nX60", "Z-3\nG1 X60", [("rapid", 8)]),
+    "a way down at rapid on a side": ("around from a side", "G1 Z-3 F250\nX60", "Z-3\nG1 X60", [("rapid", 8)]),
     "a groove at rapid": ("shaft", "G1 X26 F0.4", "G0 X26", [("rapid", 19)]),
     "a spindle that turns the other way later": ("shaft", "Z2\nX24\n", "Z2 M3\nX24\n", [("direction", 14)]),
 }  # fmt: skip
