@@ -373,8 +373,11 @@ def test_the_slider_cuts_back_and_forth(chromium: Any, tmp_path: Path) -> None:
     )
     view.page.locator("#stock").select_option("whole")
     assert view.page.evaluate(field)[0] == 0
+    bottom = "() => document.getElementById('stage').seen.body.mesh.children[1].visible"
+    assert not view.page.evaluate(bottom)  # it is seen from above
     view.page.locator("#section").select_option("1")
     assert view.page.locator("#cut").is_visible()
+    view.page.wait_for_function(bottom)  # what is seen through the section is full down to it
     view.close()
 
 

@@ -41,6 +41,10 @@ from polycnc.stock import (
 Floats = npt.NDArray[np.float64]
 
 
+_TURNS_STEP = 0.005
+"""How much the spindle's speed changes before it counts as another one, as a part of it."""
+
+
 class MachiningCollector:
     """Collect the course of the tool's tip over a run, in the coordinates of the work offset of the first cut.
 
@@ -84,11 +88,12 @@ class MachiningCollector:
         found = [self._context(int(tag), records) for tag in tags[begins].tolist()]
         shift, tool = (np.repeat(np.array(column), lengths, axis=0) for column in zip(*found, strict=True))
         pieces = np.split(tags, begins[1:])
-        turns = np.concatenate([records.spindle_turns(piece) for piece in pieces])
         starts = np.flatnonzero(np.diff(tags, prepend=~tags[:1]))
         block = np.repeat(self._table.numbers(tags[starts], records), np.diff(starts, append=len(tags)))
         position = rows[:, LEADING : LEADING + len(self._config.axes)]
         place = position[:, self._axes]
+        parts = zip(pieces, np.split(place[:, 0], begins[1:]), strict=True)
+        turns = np.concatenate([self._turns(piece, x_mm, records) for piece, x_mm in parts])
         rapid = rows[:, IS_RAPID] != 0.0
         if self._zero is None:
             cuts = np.flatnonzero(~rapid[1:] & np.any(place[1:] != place[:-1], axis=1))
@@ -103,6 +108,17 @@ class MachiningCollector:
         if self._turning:
             tip, axis = tip_and_axis(self._config, position, place, -shift)
         self._course.add(Rows(rows[:, TIME_S].copy(), tip, block, tool, rapid, turns, axis))
+
+    def _turns(self, tags: npt.NDArray[np.int64], x_mm: Floats, records: BlockRecords) -> Floats:
+        """Return how fast the spindle turns with rows of one context; in steps at constant surface speed."""
+        turns, clamp = records.spindle_turns(tags), records.surface_clamp(int(tags[0]))
+        zero = records.zero(int(tags[0]))
+        if clamp is None or zero is None:
+            return turns
+        around_mm = 2.0 * np.pi * np.maximum(np.abs(x_mm - zero.offset[self._axes[0]]), 1e-6)
+        rpm = np.minimum(np.abs(turns) * 1000.0 / around_mm, min(clamp, self._config.spindle.max_rpm))
+        steps = np.rint(np.log(np.maximum(rpm, 1e-9)) / _TURNS_STEP)
+        return np.where(np.abs(turns) > 1.0, np.sign(turns) * np.exp(_TURNS_STEP * steps), turns)
 
     def _without_start(
         self, place: Floats, rapid: npt.NDArray[np.bool_], tool: npt.NDArray[np.int64]
