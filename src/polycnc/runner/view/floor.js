@@ -27,7 +27,7 @@ export function floor(box, names, unit, lathe) {
   const big = 0.045 * longest, step = round125(longest * unit.factor / 8) / unit.factor;
   const up = lathe ? 1 : 2, [p, q] = lathe ? [0, 2] : [0, 1];
   const from = [p, q].map((i) => Math.floor((box[i][0] - 0.06 * longest) / step) * step), to = [p, q].map((i) => Math.ceil((box[i][1] + 0.06 * longest) / step) * step);
-  const level = lathe ? box[1][1] + 0.01 * longest : Math.min(box[2][0], 0) - 0.002 * longest;
+  const level = lathe ? box[1][1] + 0.01 * longest : Math.min(box[2][0], 0) - 0.012 * longest;
   const place = (a, b) => { const at = [0, 0, 0]; at[p] = a; at[q] = b; at[up] = level; return at; };
   const grid = [];
   for (let a = from[0]; a <= to[0] + 1e-9; a += step) grid.push(place(a, from[1]), place(a, to[1]), null);
