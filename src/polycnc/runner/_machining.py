@@ -192,10 +192,14 @@ class MachiningCollector:
         if self._turned or undercuts:
             if not self._turned:
                 form = form.told(course, mills)
+            if undercuts and form.target is not None:
+                raise UsageError("a target with tools that undercut", hint="Leave it out.")
             body = form.voxels(course, mills)
-            solid = TurnedCutting(body, mills, solid_fixtures_of(form.fixtures, body.cell_mm))
+            final = form.solid_target_of(body)
+            solid = TurnedCutting(body, mills, solid_fixtures_of(form.fixtures, body.cell_mm), final)
             solid.add(course)
-            return self._what_was_cut(solid.stock, solid.tally, form, course, given)
+            found = self._what_was_cut(solid.stock, solid.tally, form, course, given)
+            return found if final is None else replace(found, comparison=final.compare(body))
         stock = form.body(course, mills)
         target = form.target_of(stock)
         cutting = Cutting(stock, mills, fixtures_of(form.fixtures, stock.cell_mm), target)

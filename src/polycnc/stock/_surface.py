@@ -49,17 +49,18 @@ def _distance(a: Floats, b: Floats) -> float:
 
 
 @entry(steps=lambda triangles, *_: 50 * len(triangles))
-def sample(triangles: Floats, spacing_mm: float, inwards_mm: float, points: Floats) -> int:
-    """Write points [at least as many, 6] behind triangles [n, 3, 3] that are not seen from below; return how many.
+def sample(triangles: Floats, spacing_mm: float, inwards_mm: float, points: Floats, from_below: bool) -> int:
+    """Write points [at least as many, 6] behind triangles [n, 3, 3]; return how many.
 
     They lie as close as `spacing_mm` and as deep as `inwards_mm` below the surface, whose normal is the last three
-    columns. Those that `points` has no room for are counted alone.
+    columns. Those that `points` has no room for are counted alone, those of triangles that are seen from below only if
+    they are wanted.
     """
     count = 0
     normal = np.empty(3)
     for n in range(triangles.shape[0]):
         area = _normal(triangles[n], normal)
-        if area <= 0.0 or normal[2] < _LEAST_UP:
+        if area <= 0.0 or (normal[2] < _LEAST_UP and not from_below):
             continue
         top = 0  # the corner opposite of the longest side
         base = 0.0
@@ -106,7 +107,7 @@ def _inside(
 
 
 @compiled
-def _depth(
+def depth_behind(
     rows: Floats,
     point: Floats,
     inwards_mm: float,
@@ -173,7 +174,9 @@ def reach_behind(
                 if points[at, 2] <= lowest_tip:
                     continue
                 least = max(inwards_mm, figures[n, DEPTH_MM])
-                depth = _depth(cutter, points[at], inwards_mm, begin if way[0] > 0.0 else low_z, way, least)
+                depth = depth_behind(
+                    cutter, points[at], inwards_mm, begin if way[0] > 0.0 else low_z, way, least
+                )
                 if depth > least:
                     figures[n, DEPTH_MM] = depth
                     figures[n, AT_X], figures[n, AT_Y] = points[at, 0], points[at, 1]
