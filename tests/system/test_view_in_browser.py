@@ -373,8 +373,11 @@ def test_the_slider_cuts_back_and_forth(chromium: Any, tmp_path: Path) -> None:
     )
     view.page.locator("#stock").select_option("whole")
     assert view.page.evaluate(field)[0] == 0
+    bottom = "() => document.getElementById('stage').seen.body.mesh.children[1].visible"
+    assert not view.page.evaluate(bottom)  # it is seen from above
     view.page.locator("#section").select_option("1")
     assert view.page.locator("#cut").is_visible()
+    view.page.wait_for_function(bottom)  # what is seen through the section is full down to it
     view.close()
 
 
@@ -393,6 +396,28 @@ def test_an_alarm_is_named_with_its_place_and_the_rest_is_grey(chromium: Any, tm
     assert count >= 2
     view.page.locator("#stopped").click()
     assert view.time_s == pytest.approx(float(view.trace.t_s[-1]), abs=0.002)
+    view.close()
+
+
+def test_rapids_between_cuts_are_in_the_picture_and_no_number_is_cut(chromium: Any, tmp_path: Path) -> None:
+    """Its tool is not known, so that there is a body that nothing cuts: the path is shown instead, whole."""
+    view = Opened(chromium, tmp_path, "bolt_circle.tap", "mill3", "auto")
+    places, numbers, faint, size = view.page.evaluate(
+        """() => { const { stage, path } = document.getElementById('stage').seen, at = stage.camera.position.clone();
+        const on = (v) => stage.project(v, at).toArray().slice(0, 2), found = [];
+        const legend = document.getElementById('legend');
+        stage.render();
+        stage.scene.traverse((each) => { if (each.isSprite && each.visible && each.size_px[1] === 14)
+          found.push([...on(each.getWorldPosition(at)), each.size_px[0] / 2, 7]); });
+        return [[[50, 70, 20], [20, 40, 20], [80, 40, 20], [50, 40, -12]].map((p) => on(at.clone().set(...p))), found,
+          path.cuts.material.uniforms.faint.value,
+          [stage.width, stage.height, legend.offsetWidth + 12, legend.offsetHeight + 10]]; }"""
+    )
+    assert all(0 < x < size[0] and 0 < y < size[1] for x, y in places)
+    assert len(numbers) > 8
+    assert all(w <= x <= size[0] - w and h <= y <= size[1] - h for x, y, w, h in numbers)
+    assert not any(x - w < size[2] and y - h < size[3] for x, y, w, h in numbers)
+    assert faint == 1
     view.close()
 
 

@@ -182,6 +182,7 @@ def test_rapids_across_where_it_has_cut(moves: str, line: int) -> None:
 @pytest.mark.parametrize(
     "moves",
     [
+        "G0 X0 Z5\nG1 Z1\nX20\nG0 Z5\nG28 G91 Z0\nG28 X0\n",  # home, which nobody has set
         "G0 X0 Z5\nG1 Z-1\nX20\nG0 Z2\nX30\n",  # across at 2, above what has been cut
         "G0 X0 Z2\nG1 Z-1\nX20\nG0 Z10\nX30\nZ2\nG1 Z-2\nX9\nG0 Z2\nX1\n",
         "G0 X0 Z2\nG1 Z-1\nX20\nG0 Z-0.5\nZ2\nX30\n",  # along Z only

@@ -105,7 +105,7 @@ def _warm_stock(progress: Progress) -> None:
         body = str(part)
         runner.run(_PLATE, dialect="fanuc", check=False, stock=body, resolution_mm=1.0, target=body)
         progress("the same on a table that turns", 0.65)
-        runner.run(_TURNED, "mill5", "din", check=False, stock=body, resolution_mm=1.0)
+        runner.run(_TURNED, "mill5", "din", check=False, stock=body, resolution_mm=1.0, target=body)
     progress("a table that turns", 0.7)
     runner.run(_TURNED, "mill5", "din", check=False, stock="box=-9,-9,-9,9,9,9", resolution_mm=1.0)
     progress("a shaft", 0.8)

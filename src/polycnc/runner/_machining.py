@@ -14,6 +14,7 @@ from polycnc.kernel import IS_RAPID, LEADING, TIME_S
 from polycnc.machine import MachineConfig, ToolConfig
 from polycnc.nc import CONTEXT_SHIFT, BlockRecords
 from polycnc.runner._blocks import BlockTable, ExecutedBlock
+from polycnc.runner._known_places import NOWHERE, without_doubtful, without_homing
 from polycnc.runner._machined import Collision, IdleFeed, Machined
 from polycnc.runner._rotation import tip_and_axis, turning_axes
 from polycnc.runner._stock_tools import hand_tool, said_form, tools_of
@@ -40,8 +41,8 @@ from polycnc.stock import (
 Floats = npt.NDArray[np.float64]
 
 
-_NOWHERE = -1
-"""The number of no tool."""
+_TURNS_STEP = 0.005
+"""How much the spindle's speed changes before it counts as another one, as a part of it."""
 
 
 class MachiningCollector:
@@ -87,11 +88,12 @@ class MachiningCollector:
         found = [self._context(int(tag), records) for tag in tags[begins].tolist()]
         shift, tool = (np.repeat(np.array(column), lengths, axis=0) for column in zip(*found, strict=True))
         pieces = np.split(tags, begins[1:])
-        turns = np.concatenate([records.spindle_turns(piece) for piece in pieces])
         starts = np.flatnonzero(np.diff(tags, prepend=~tags[:1]))
         block = np.repeat(self._table.numbers(tags[starts], records), np.diff(starts, append=len(tags)))
         position = rows[:, LEADING : LEADING + len(self._config.axes)]
         place = position[:, self._axes]
+        parts = zip(pieces, np.split(place[:, 0], begins[1:]), strict=True)
+        turns = np.concatenate([self._turns(piece, x_mm, records) for piece, x_mm in parts])
         rapid = rows[:, IS_RAPID] != 0.0
         if self._zero is None:
             cuts = np.flatnonzero(~rapid[1:] & np.any(place[1:] != place[:-1], axis=1))
@@ -107,6 +109,17 @@ class MachiningCollector:
             tip, axis = tip_and_axis(self._config, position, place, -shift)
         self._course.add(Rows(rows[:, TIME_S].copy(), tip, block, tool, rapid, turns, axis))
 
+    def _turns(self, tags: npt.NDArray[np.int64], x_mm: Floats, records: BlockRecords) -> Floats:
+        """Return how fast the spindle turns with rows of one context; in steps at constant surface speed."""
+        turns, clamp = records.spindle_turns(tags), records.surface_clamp(int(tags[0]))
+        zero = records.zero(int(tags[0]))
+        if clamp is None or zero is None:
+            return turns
+        around_mm = 2.0 * np.pi * np.maximum(np.abs(x_mm - zero.offset[self._axes[0]]), 1e-6)
+        rpm = np.minimum(np.abs(turns) * 1000.0 / around_mm, min(clamp, self._config.spindle.max_rpm))
+        steps = np.rint(np.log(np.maximum(rpm, 1e-9)) / _TURNS_STEP)
+        return np.where(np.abs(turns) > 1.0, np.sign(turns) * np.exp(_TURNS_STEP * steps), turns)
+
     def _without_start(
         self, place: Floats, rapid: npt.NDArray[np.bool_], tool: npt.NDArray[np.int64]
     ) -> npt.NDArray[np.int64]:
@@ -120,7 +133,7 @@ class MachiningCollector:
         before = place[:1] if self._last_place is None else self._last_place
         self._last_place = place[-1:].copy()
         still = np.all(np.concatenate((before, place[:-1])) == place, axis=1)
-        return np.where((rapid | still) & (np.arange(len(tool)) < first), _NOWHERE, tool)
+        return np.where((rapid | still) & (np.arange(len(tool)) < first), NOWHERE, tool)
 
     def _with_hand_tool(
         self, course: Rows, tools: Mapping[int, Tool | Insert]
@@ -158,6 +171,10 @@ class MachiningCollector:
         """
         course, (x, y, z) = self._course.rows(), self._zero_mm()
         course = replace(course, tip=course.tip - (x, y, z))
+        if z == 0.0 and not self._turned:
+            course = without_homing(
+                course, course.tip[:, 0 if self._lathe else 2], self._table.blocks(), self.texts
+            )
         form, self._said = said_form(form, self.texts)
         if self._lathe:
             given = turning_tools_of(self._config, self.texts) if tools is None else tools
@@ -175,10 +192,14 @@ class MachiningCollector:
         if self._turned or undercuts or isinstance(form.given, Voxels):
             if not self._turned:
                 form = form.told(course, mills)
+            if undercuts and form.target is not None:
+                raise UsageError("a target with tools that undercut", hint="Leave it out.")
             body = form.voxels(course, mills)
-            solid = TurnedCutting(body, mills, solid_fixtures_of(form.fixtures, body.cell_mm))
+            final = form.solid_target_of(body)
+            solid = TurnedCutting(body, mills, solid_fixtures_of(form.fixtures, body.cell_mm), final)
             solid.add(course)
-            return self._what_was_cut(solid.stock, solid.tally, form, course, given)
+            found = self._what_was_cut(solid.stock, solid.tally, form, course, given)
+            return found if final is None else replace(found, comparison=final.compare(body))
         stock = form.body(course, mills)
         target = form.target_of(stock)
         cutting = Cutting(stock, mills, fixtures_of(form.fixtures, stock.cell_mm), target)
@@ -200,9 +221,14 @@ class MachiningCollector:
     ) -> Machined:
         blocks = self._table.blocks()
         removed = np.zeros(len(blocks))
-        known = tally.by_block_mm3[: len(blocks)]
-        removed[: len(known)] = known
+        counted = tally.by_block_mm3[: len(blocks)]
+        removed[: len(counted)] = counted
         missed = "" if removed.any() or tally.unknown_tools else self._missed(stock, course)
+        contacts = tally.contacts.all()
+        known = without_doubtful(contacts, course, tally.unknown_tools)
+        doubt = (
+            f"{len(contacts) - len(known)} collisions are not reported: tools of unknown shape have cut there"
+        )
         return Machined(
             stock=stock,
             blocks=blocks,
@@ -213,7 +239,7 @@ class MachiningCollector:
                 Collision(
                     each.kind, at.program, at.line, self._place(at), each.t_s, each.place, each.depth_mm
                 )
-                for each in tally.contacts.all()
+                for each in known
                 for at in [blocks[each.block]]
             ],
             idle=[
@@ -227,6 +253,7 @@ class MachiningCollector:
                 f"stock: {stock}, {stock.cell_mm:.4g} mm a cell{self._said}",
                 *self._notes,
                 *map(self._cuts_nothing, sorted(tally.unknown_tools)),
+                *([doubt] if len(known) < len(contacts) else []),
                 *([missed] if missed else []),
             ],
             form=form,

@@ -23,6 +23,8 @@ _TURNS = {
 _ACROSS = "XY"
 _SEEN_BY_CHECK = ((NAMED_END, "unread"), (NOT_EXECUTED, "not_executed"), (CODE_SYSTEM, "code_system"))
 """Endings of messages that are remarks too, and their keys."""
+HOMING = re.compile(r"[Gg]0*(?:28|30|53)(?![0-9.])")
+"""Words that go to a position of the machine."""
 _SOMETHING = re.compile(rb"[^% \t\r\n\0]")
 
 
@@ -82,6 +84,7 @@ class MachiningWatch:
         self._changes_tools = dialect.has_tool_change
         names = self.channel.machine.config.axis_names
         self._z = names.index("Z") if "Z" in names else -1
+        self._home = self.channel.machine.config.axes[self._z].home if self._z >= 0 else np.nan
         self._across = [names.index(name) for name in _ACROSS if name in names]
 
     @property
@@ -171,6 +174,11 @@ class MachiningWatch:
         clear = _carried(fed, self._clear)
         tops = np.maximum.accumulate(np.concatenate(([self._top], np.where(~rapid & across, low, -np.inf))))
         wrong = rapid & across & (low < clear) & (low <= tops[:-1])
+        for at in np.flatnonzero(
+            wrong & (low == self._home)
+        ).tolist():  # where a part at zero has no known home
+            record = self.channel.records.block(int(tags[at]))
+            wrong[at] = record is None or HOMING.search(record.text) is None
         if wrong.any():
             first = int(np.flatnonzero(wrong)[0])
             text = f"goes across at rapid at Z{_number(low[first])} (machine), where the part has been cut"

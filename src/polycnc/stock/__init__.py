@@ -25,6 +25,7 @@ from polycnc.stock._turned_cutting import TurnedCutting
 from polycnc.stock._turned_solid import TurnedTarget, turned_fixtures_of
 from polycnc.stock._turning import TurningCutting
 from polycnc.stock._voxels import Voxels
+from polycnc.stock._ways import runs
 
 __all__ = [
     "MESH_FORMATS",
@@ -67,6 +68,7 @@ __all__ = [
     "iso_insert",
     "make_profile",
     "read_stl",
+    "runs",
     "solid_fixtures_of",
     "stock_of_remarks",
     "threading_tool",

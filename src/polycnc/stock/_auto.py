@@ -95,13 +95,6 @@ class _Moves:
             found &= np.all((places[:, :2] >= low - size) & (places[:, :2] <= high + size), axis=1)
         return found
 
-    def came_from_above(self, top: float) -> Flags:
-        """Return which moves are at rapid since they were above the top."""
-        number = np.arange(len(self.fed))
-        above = np.maximum.accumulate(np.where(self.begin[:, 2] >= top, number, -1))
-        fed = np.maximum.accumulate(np.where(self.fed, number, -1))
-        return self.rapid & (above > fed)
-
 
 @dataclass(slots=True)
 class _Sides:
@@ -111,10 +104,10 @@ class _Sides:
     low: list[float]
     high: list[float]
 
-    def leave_out(self, at: int, *, from_above: bool) -> None:
+    def leave_out(self, at: int) -> None:
         """Draw one side in, so that a tool that came to the end of a move at rapid, close to it, is beside the body.
 
-        Where the program feeds down as far out, or along the side after it has come from a cut, there is material.
+        Where the program feeds down as far out, or along the side, there is material.
         """
         x, y, _ = self.moves.end[at].tolist()
         place, radius = (x, y), float(self.moves.radius[at])
@@ -126,10 +119,10 @@ class _Sides:
         if drawn > 2.0 * (radius + MARGIN_MM):
             return
         sign = 1.0 if side is self.low else -1.0
-        if not self._is_fed(i, sign, place[i], radius, along=not from_above):
+        if not self._is_fed(i, sign, place[i], radius):
             side[i] = place[i] + sign * radius
 
-    def _is_fed(self, i: int, sign: float, place: float, radius: float, *, along: bool) -> bool:
+    def _is_fed(self, i: int, sign: float, place: float, radius: float) -> bool:
         """Tell whether the program feeds as far out on a side as a place is: down, or along it."""
         moves = self.moves
         far = sign * place + _SAME_MM
@@ -141,7 +134,7 @@ class _Sides:
         plunges = (down > _SAME_MM) & (way[:, :2].max(axis=1) < _SAME_MM) & (moves.end[out, 2] < self.high[2])
         if plunges.any():
             return True
-        return along and float(way[:, 1 - i].sum()) > _ALONG_DIAMETERS * 2.0 * radius
+        return float(way[:, 1 - i].sum()) > _ALONG_DIAMETERS * 2.0 * radius
 
 
 def around(course: Rows, tools: Mapping[int, Tool]) -> Box:
@@ -167,9 +160,8 @@ def around(course: Rows, tools: Mapping[int, Tool]) -> Box:
     deep = moves.rapid & (moves.end[:, 2] < top)
     if deep.any():
         deep &= np.isin(moves.block, _met_at_rapid(course, tools, sides)) & ~meant
-    from_above = moves.came_from_above(top)
     for at in np.flatnonzero(deep).tolist():
-        sides.leave_out(at, from_above=bool(from_above[at]))
+        sides.leave_out(at)
     low, high = sides.low, sides.high
     return Box((low[0], low[1], low[2]), (high[0], high[1], high[2]))
 

@@ -12,6 +12,7 @@ from polycnc.errors import UsageError
 from polycnc.stock._auto import around, around_any_side, around_turned, leave_out_rapids
 from polycnc.stock._rows import Rows
 from polycnc.stock._solid import solid_stock, solid_voxels
+from polycnc.stock._solid_target import SolidTarget
 from polycnc.stock._stock import Box, Stock, check_cell
 from polycnc.stock._target import TOLERANCE_MM, Target, check_tolerance
 from polycnc.stock._tool import Tool
@@ -110,8 +111,6 @@ class Form:
         Raises:
             UsageError: a body that is not one of these.
         """
-        if self.target is not None:
-            raise UsageError("a target with turning axes or tools that undercut", hint="Leave it out.")
         if isinstance(self.given, Voxels):
             return self.given.copy()
         if isinstance(self.given, Stock):
@@ -150,6 +149,14 @@ class Form:
             UsageError: no such file, or a surface that is none.
         """
         return None if self.target is None else Target(Path(self.target), stock, self.tolerance_mm)
+
+    def solid_target_of(self, body: Voxels) -> SolidTarget | None:
+        """Return what is to come out of a body that tools cut from any side; None if that is not said.
+
+        Raises:
+            UsageError: no such file, or a surface that is none.
+        """
+        return None if self.target is None else SolidTarget(Path(self.target), body, self.tolerance_mm)
 
 
 def file_of(text: str) -> Path | None:

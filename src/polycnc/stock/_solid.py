@@ -146,16 +146,20 @@ def solid_voxels(
     size = max(b - a for a, b in zip(box.low, box.high, strict=True))
     found = Voxels(box, cell_mm or default_mm(size))
     found.name = f"'{path.name}'"
-    triangles = np.ascontiguousarray(surface.vertices[surface.faces])
-    height, _, width = found.cells.shape
+    draw_cells(np.ascontiguousarray(surface.vertices[surface.faces]), found)
+    return found
+
+
+def draw_cells(triangles: npt.NDArray[np.float64], body: Voxels) -> None:
+    """Fill the cells of a body by what is within a closed surface [n, 3, 3], whatever they were."""
+    height, _, width = body.cells.shape
     strip = max(1, _MOST_SHARES // (height * width))
-    for first in range(0, found.cells.shape[1], strip):
-        cells = found.cells[:, first : first + strip]
+    for first in range(0, body.cells.shape[1], strip):
+        cells = body.cells[:, first : first + strip]
         shares = np.zeros(cells.shape, np.float32)
-        fill(triangles, found.first + (0.0, first * found.cell_mm, 0.0), found.cell_mm, shares)
+        fill(triangles, body.first + (0.0, first * body.cell_mm, 0.0), body.cell_mm, shares)
         shares = np.cumsum(shares[::-1], axis=0)[::-1]
         cells[...] = np.rint(np.clip(shares / _RAYS**2, 0.0, 1.0) * FULL)
-    return found
 
 
 def _placed(path: Path, turned: str) -> tuple[Mesh, Box]:

@@ -18,6 +18,7 @@ Integers = npt.NDArray[np.int64]
 
 _AROUND = 0.75  # cells: more than from the middle of one to its corner
 _LEAST_UP = -1e-3
+_HALVINGS = 16
 
 
 @compiled
@@ -48,17 +49,18 @@ def _distance(a: Floats, b: Floats) -> float:
 
 
 @entry(steps=lambda triangles, *_: 50 * len(triangles))
-def sample(triangles: Floats, spacing_mm: float, inwards_mm: float, points: Floats) -> int:
-    """Write points [at least as many, 4] behind triangles [n, 3, 3] that are not seen from below; return how many.
+def sample(triangles: Floats, spacing_mm: float, inwards_mm: float, points: Floats, from_below: bool) -> int:
+    """Write points [at least as many, 6] behind triangles [n, 3, 3]; return how many.
 
-    They lie as close as `spacing_mm` and as deep as `inwards_mm` below the surface, whose normal is the last
-    column as far as it points up. Those that `points` has no room for are counted alone.
+    They lie as close as `spacing_mm` and as deep as `inwards_mm` below the surface, whose normal is the last three
+    columns. Those that `points` has no room for are counted alone, those of triangles that are seen from below only if
+    they are wanted.
     """
     count = 0
     normal = np.empty(3)
     for n in range(triangles.shape[0]):
         area = _normal(triangles[n], normal)
-        if area <= 0.0 or normal[2] < _LEAST_UP:
+        if area <= 0.0 or (normal[2] < _LEAST_UP and not from_below):
             continue
         top = 0  # the corner opposite of the longest side
         base = 0.0
@@ -78,36 +80,61 @@ def sample(triangles: Floats, spacing_mm: float, inwards_mm: float, points: Floa
                         low = triangles[n, left, i] * (1.0 - share) + triangles[n, right, i] * share
                         place = low * (1.0 - up) + triangles[n, top, i] * up
                         points[count, i] = place - inwards_mm * normal[i]
-                    points[count, 3] = normal[2]
+                        points[count, 3 + i] = normal[i]
                 count += 1
     return count
 
 
 @compiled
-def _depth(
-    rows: Floats, point: Floats, inwards_mm: float, begin: Floats, way: tuple[float, float, float, float]
-) -> float:
-    """Return how deep the surface before a point is in what a tool sweeps, as if that were even nearby.
+def _inside(
+    rows: Floats, point: Floats, back_mm: float, begin: Floats, way: tuple[float, float, float, float]
+) -> tuple[float, float]:
+    """Return how far in what a tool sweeps a point is: from its side, and from below; 0 for both if it is not.
 
-    It is 0 where the point is not in it.
+    The point is taken `back_mm` farther behind its surface.
     """
     length, ux, uy, slope = way
     radius = rows[rows.shape[0] - 1, TO_R]
-    dx, dy = point[0] - begin[0], point[1] - begin[1]
+    dx, dy = point[0] - back_mm * point[3] - begin[0], point[1] - back_mm * point[4] - begin[1]
     along, beside = dx * ux + dy * uy, dy * ux - dx * uy
     past = along - min(max(along, 0.0), length)
     sideways = radius - math.sqrt(past * past + beside * beside)
     if sideways <= 0.0:
-        return 0.0
+        return 0.0, 0.0
     low = lowest(rows, beside * beside, slope, -along, length - along)
-    if low >= 0.5 * FAR:
-        return 0.0
-    downwards = point[2] - (begin[2] + slope * along + low)
-    if downwards <= 0.0:
-        return 0.0
-    downwards += inwards_mm * max(point[3], 0.0)
-    sideways += inwards_mm * math.sqrt(max(0.0, 1.0 - point[3] * point[3]))
-    return float(downwards * sideways / math.sqrt(downwards * downwards + sideways * sideways))
+    downwards = point[2] - back_mm * point[5] - (begin[2] + slope * along + low)
+    return (sideways, downwards) if low < 0.5 * FAR and downwards > 0.0 else (0.0, 0.0)
+
+
+@compiled
+def depth_behind(
+    rows: Floats,
+    point: Floats,
+    inwards_mm: float,
+    begin: Floats,
+    way: tuple[float, float, float, float],
+    least_mm: float,
+) -> float:
+    """Return how deep a tool gets behind the surface before a point; `least_mm` if that is not deeper.
+
+    It is the way out of the tool: square to the surface, or sideways or down if that is shorter, as beside an edge.
+    """
+    sideways, downwards = _inside(rows, point, 0.0, begin, way)
+    level = math.sqrt(max(0.0, 1.0 - point[5] * point[5]))
+    most = min(sideways + inwards_mm * level, downwards + inwards_mm * max(point[5], 0.0))
+    if sideways <= 0.0 or most <= least_mm:
+        return least_mm
+    low, high = 0.0, most - inwards_mm
+    for _ in range(_HALVINGS):
+        if _inside(rows, point, high, begin, way)[0] > 0.0:
+            low = high
+            break
+        middle = 0.5 * (low + high)
+        if _inside(rows, point, middle, begin, way)[0] > 0.0:
+            low = middle
+        else:
+            high = middle
+    return max(least_mm, inwards_mm + low)
 
 
 @entry(steps=lambda points, starts, x0, y0, cell_mm, inwards_mm, places, *_: 500 * len(places))
@@ -146,7 +173,10 @@ def reach_behind(
             for at in range(starts[iy, first_x], starts[iy, last_x + 1]):
                 if points[at, 2] <= lowest_tip:
                     continue
-                depth = _depth(cutter, points[at], inwards_mm, begin if way[0] > 0.0 else low_z, way)
-                if depth > figures[n, DEPTH_MM]:
+                least = max(inwards_mm, figures[n, DEPTH_MM])
+                depth = depth_behind(
+                    cutter, points[at], inwards_mm, begin if way[0] > 0.0 else low_z, way, least
+                )
+                if depth > least:
                     figures[n, DEPTH_MM] = depth
                     figures[n, AT_X], figures[n, AT_Y] = points[at, 0], points[at, 1]

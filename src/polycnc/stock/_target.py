@@ -20,7 +20,7 @@ Floats = npt.NDArray[np.float64]
 TOLERANCE_MM = 0.02
 """How far a part may differ from its target where that is not said."""
 TOLERANCES_MM = (0.001, 10.0)
-MOST_POINTS = 12_000_000
+MOST_POINTS = 8_000_000
 
 
 @dataclass(frozen=True, slots=True)
@@ -69,15 +69,7 @@ class Target:
         triangles = np.ascontiguousarray(surface.vertices[surface.faces])
         self._grid = stock.grid._replace(z=np.full_like(stock.grid.z, stock.grid.bottom))
         draw(triangles, self._grid.x0, self._grid.y0, self._grid.cell_mm, self._grid.z)
-        count = sample(triangles, stock.cell_mm, tolerance_mm, np.zeros((0, 4)))
-        if count > MOST_POINTS:
-            raise UsageError(
-                f"the surface in '{path}' has {count:,} points {stock.cell_mm:g} mm apart",
-                hint=f"At most {MOST_POINTS:,} are looked at: choose a coarser resolution.",
-            )
-        points = np.zeros((count, 4))
-        sample(triangles, stock.cell_mm, tolerance_mm, points)
-        self._points, self._starts = _by_cell(points, self._grid)
+        self._points, self._starts = points_by_cell(path, triangles, self._grid, tolerance_mm)
 
     def gouges(self, places: Floats, cutter: Floats, figures: Floats) -> None:
         """Write how deep a tool cuts into the target on each way, and where, into `figures` [ways, 6]."""
@@ -118,6 +110,25 @@ def _around(heights: Floats, pick: np.ufunc) -> Floats:
     across = pick(pick(wide[:, :-2], wide[:, 1:-1]), wide[:, 2:])
     found: Floats = pick(pick(across[:-2], across[1:-1]), across[2:])
     return found
+
+
+def points_by_cell(
+    path: Path, triangles: Floats, grid: Grid, tolerance_mm: float, *, from_below: bool = False
+) -> tuple[Floats, npt.NDArray[np.int64]]:
+    """Return points of a surface a cell apart in the order of a grid's cells, and where those of each cell begin.
+
+    Raises:
+        UsageError: there are too many.
+    """
+    count = sample(triangles, grid.cell_mm, tolerance_mm, np.zeros((0, 6)), from_below)
+    if count > MOST_POINTS:
+        raise UsageError(
+            f"the surface in '{path}' has {count:,} points {grid.cell_mm:g} mm apart",
+            hint=f"At most {MOST_POINTS:,} are looked at: choose a coarser resolution.",
+        )
+    points = np.zeros((count, 6))
+    sample(triangles, grid.cell_mm, tolerance_mm, points, from_below)
+    return _by_cell(points, grid)
 
 
 def _by_cell(points: Floats, grid: Grid) -> tuple[Floats, npt.NDArray[np.int64]]:

@@ -15,9 +15,12 @@ _NUMBERED = re.compile(
     r"|^\s*0*(\d{1,9}) = (?=[A-Za-z])",
     re.IGNORECASE,
 )
-_NUMBER = r"(\d+(?:\.\d*)?(?![\d.]*e[-+]?\d)|\.\d+)"
+_NUMBER = r"(\d+(?:\.\d*)?(?![\d.]*e[-+]?\d)(?!\.?\d)|\.\d+)"
+_WITH_COMMA = r"(\d+(?:\.\d*|,\d+)?(?![\d.]*e[-+]?\d)(?![.,]?\d)|\.\d+)"
+_STATED = re.compile(r"\bD(?:IA(?:M(?:ETER)?)?)?\s*=\s*[-+.\d]", re.IGNORECASE)
 _DIAMETER = re.compile(
-    rf"(?:\bD(?:IA(?:M(?:ETER)?)?)?\s*[=:]|\btool[ _]?dia(?:meter)?\"?\s*[=:]?)\s*{_NUMBER}(?:\s*(mm|in)(?![a-z]))?",
+    rf"(?:\bD(?:IA(?:M(?:ETER)?)?)?\s*[=:]|\btool[ _]?dia(?:meter)?\"?\s*[=:]?)\s*"
+    rf"{_WITH_COMMA}(?:\s*(mm|in)(?![a-z]))?",
     re.IGNORECASE,
 )
 _OF_NAMED = re.compile(
@@ -145,7 +148,9 @@ def _of_statement(kind: str, numbers: str, unit_mm: float) -> Tool | None:
 def _diameter_mm(remark: str, inch: bool) -> float | None:
     if found := _DIAMETER.search(remark):
         in_inches = found[2].lower() == "in" if found[2] else inch
-        return float(found[1]) * (MM_PER_INCH if in_inches else 1.0)
+        return float(found[1].replace(",", ".")) * (MM_PER_INCH if in_inches else 1.0)
+    if _STATED.search(remark):  # a sign or a second point: no size
+        return None
     rest = _NUMBERED.sub("", remark)
     named = _OF_NAMED.search(rest) if rest != remark or _NOUN.search(rest) else None
     if named is not None and (size := named[1] or named[2]):

@@ -12,6 +12,7 @@ from polycnc.stock._contacts import Contact, ContactKind
 from polycnc.stock._cutting import CHORD_SHARE
 from polycnc.stock._profile import COLUMNS
 from polycnc.stock._rows import Rows
+from polycnc.stock._solid_target import SolidTarget
 from polycnc.stock._sweep import AT_X, AT_Y, DEPTH_MM
 from polycnc.stock._tally import NEAR_CELLS, Tally
 from polycnc.stock._tool import Tool
@@ -30,17 +31,23 @@ class TurnedCutting:
     """Let tools cut a body of cells (see `tally`), each with the axis that its rows have.
 
     Depths are how far up the tool the material is. A tool that is not among `tools` cuts nothing. `fixtures` turn with
-    the body, and no part of a tool may touch them.
+    the body, and no part of a tool may touch them; what cuts into `target` is a contact too.
     """
 
-    def __init__(self, stock: Voxels, tools: Mapping[int, Tool], fixtures: Sequence[Voxels] = ()) -> None:
+    def __init__(
+        self,
+        stock: Voxels,
+        tools: Mapping[int, Tool],
+        fixtures: Sequence[Voxels] = (),
+        target: SolidTarget | None = None,
+    ) -> None:
         self.stock = stock
         self.tally = Tally()
         self._tools = tools
         self._ways = WaysOfRows(
             CHORD_SHARE * stock.cell_mm, {number: tool.radius_mm for number, tool in tools.items()}
         )
-        self._fixtures = fixtures
+        self._fixtures, self._target = fixtures, target
         self._reach_mm = _diagonal_mm(stock)
 
     def add(self, rows: Rows) -> None:
@@ -64,6 +71,11 @@ class TurnedCutting:
             for kind, _, clear in self._held(tool):
                 met = self._figures(ways, clear, 0.0, _diagonal_mm(fixture), cuts=False, body=fixture)
                 self._note(kind, ways, met, 0.0)
+        if self._target is not None:
+            met = np.zeros((len(ways.ends), VOXEL_FIGURES))
+            places, axes = (np.ascontiguousarray(each) for each in (ways.places[:, :3], ways.axes))
+            self._target.gouges(places, axes, outline.rows, min(height, self._reach_mm), met)
+            self._note(ContactKind.GOUGE, ways, met, 0.0)
         if ways.rapid:
             met = self._figures(ways, core, rim, height - rim, cuts=False, tops=tops)
             self._note(ContactKind.RAPID, ways, met, rim)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -10,7 +12,7 @@ import pytest
 from polycnc import runner
 from polycnc.errors import UsageError
 from polycnc.machine import MachineConfig, ToolConfig, parse_machine, preset_text
-from polycnc.stock import Mesh, fixtures_of
+from polycnc.stock import ContactKind, Mesh, fixtures_of
 
 manifold3d = pytest.importorskip("manifold3d")
 
@@ -81,11 +83,7 @@ def target(tmp_path_factory: pytest.TempPathFactory) -> str:
     body = manifold3d.Manifold.cube([60.0, 42.0, 20.0]).translate([0.0, 0.0, -20.0])
     for y in (11.0, 25.0):
         body -= manifold3d.Manifold.cube([80.0, 10.0, 10.0]).translate([-10.0, y, -4.0])
-    found: Any = body.to_mesh()
-    file = tmp_path_factory.mktemp("target") / "part.stl"
-    vertices = np.array(found.vert_properties[:, :3], np.float64)
-    Mesh(vertices, np.array(found.tri_verts, np.int64)).write_stl(file)
-    return str(file)
+    return written(body, tmp_path_factory.mktemp("target") / "part.stl")
 
 
 def looked_at(text: str, machine: MachineConfig, target: str) -> list[tuple[str, int]]:
@@ -124,6 +122,66 @@ def test_a_gouge_says_how_deep_it_is(machine: MachineConfig, target: str) -> Non
     assert found["floor"].comparison.gouge_mm3 == pytest.approx(60.0 * 10.0 * 0.05, rel=0.05)
     assert found["floor"].comparison.rest_place is None
     assert found["floor"].as_dict()["target"]["tolerance_mm"] == 0.03
+
+
+def written(body: Any, file: Path) -> str:
+    found = body.to_mesh()
+    vertices = np.array(found.vert_properties[:, :3], np.float64)
+    Mesh(vertices, np.array(found.tri_verts, np.int64)).write_stl(file)
+    return str(file)
+
+
+def gouges(text: str, stock: str, target: str) -> list[tuple[int, float]]:
+    found = runner.run(text, "mill3", "fanuc", check=False, stock=stock, resolution_mm=0.2, target=target)
+    return [(each.line, each.depth_mm) for each in found.collisions if each.kind is ContactKind.GOUGE]
+
+
+@pytest.mark.parametrize("slope_deg", [30.0, 60.0, 85.0])
+def test_a_gouge_in_a_slope_is_as_deep_as_it_is_square_to_it(slope_deg: float, tmp_path: Path) -> None:
+    """A ball of 10 mm runs down a slope three times, the second time 0.05 mm too deep."""
+    sine, cosine = math.sin(math.radians(slope_deg)), math.cos(math.radians(slope_deg))
+    cut = manifold3d.Manifold.cube([60.0, 200.0, 200.0]).translate([-30.0, -100.0, 0.0])
+    body = manifold3d.Manifold.cube([24.0, 12.0, 90.0]).translate([-2.0, -6.0, -60.0])
+    target = written(body - cut.rotate([-slope_deg, 0.0, 0.0]), tmp_path / "slope.stl")
+    lines = ["(T1 D=10 ball end mill)", "G21 G90 G54", "T1 M6", "S5000 M3"]
+    for x, off in ((0.0, 5.0), (10.0, 4.95), (20.0, 5.0)):
+        begin, end = (
+            f"Y{y * cosine + off * sine:.5f} Z{off * cosine - y * sine - 5.0:.5f}" for y in (-3.0, 3.0)
+        )
+        lines += [f"G0 X{x} Y0 Z60", begin.split()[0], begin.split()[1], f"G1 {end} F900"]
+    found = gouges("\n".join([*lines, "G0 Z60", "M30", ""]), "box=-2,-6,-60,22,6,30", target)
+    assert {line for line, _ in found} == {11, 12, 13}
+    assert dict(found)[12] == pytest.approx(0.05, abs=0.002)
+
+
+def test_what_is_cut_as_deep_as_its_tolerance_beside_an_edge_is_no_gouge(tmp_path: Path) -> None:
+    """Around a boss with round corners in fine facets; 0.015 mm too far in is within the tolerance, 0.05 is not."""
+    square = manifold3d.CrossSection.square([12.0, 8.0])
+    round_ = square.offset(4.0, manifold3d.JoinType.Round, circular_segments=720)
+    body = manifold3d.Manifold.cube([32.0, 28.0, 4.0]).translate([-10.0, -10.0, -7.0])
+    target = written(
+        body + manifold3d.Manifold.extrude(round_, 4.0).translate([0.0, 0.0, -4.0]), tmp_path / "a.stl"
+    )
+    for off, wrong in ((4.0, False), (3.985, False), (3.95, True)):
+        r = 4.0 + off
+        text = f"""(T1 D=8 flat end mill)
+G21 G90 G17 G54
+T1 M6
+S5000 M3
+G0 X-20 Y0 Z5
+Z-3
+G1 X{-r} F1500
+Y8
+G2 X0 Y{8.0 + r} R{r}
+G1 X12
+G2 X{12.0 + r} Y8 R{r}
+G1 Y-20
+G0 Z20
+M30
+"""
+        found = gouges(text, "box=-10,-10,-7,22,18,0", target)
+        assert [line for line, _ in found] == ([7, 8, 9, 10, 11, 12] if wrong else [])
+        assert all(depth == pytest.approx(0.05, abs=0.006) for _, depth in found)
 
 
 @pytest.mark.parametrize(

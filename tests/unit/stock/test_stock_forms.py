@@ -295,6 +295,10 @@ UNLIKE = ("probe", "thread mill", "T-slot mill", "dovetail mill", "lollipop mill
         ("T6 Gewindefräser D7", None),
         ("T6 FRESA 9mm", Tool(ToolKind.FLAT, 9.0)),
         ("Finish everything", None),
+        ("T1 D=1,5 flat end mill", Tool(ToolKind.FLAT, 1.5)),
+        ("T1 D=10, CR=0, flat end mill", Tool(ToolKind.FLAT, 10.0)),
+        ("T1 D=-5 flat end mill", None),
+        ("T1 D=10.5.5 flat end mill", None),
     ],
 )
 def test_tools_in_remarks(remark: str, tool: Tool | None) -> None:

@@ -11,7 +11,7 @@ import pytest
 
 from polycnc import runner
 from polycnc.errors import UsageError
-from polycnc.machine import load_machine
+from polycnc.machine import load_machine, parse_machine, preset_text
 from polycnc.stock import (
     Box,
     ContactKind,
@@ -160,6 +160,51 @@ def test_a_table_that_turns_shows_its_sides_to_the_tool() -> None:
     assert (wrong.collisions[0].kind, wrong.collisions[0].line) == (ContactKind.RAPID, 6)
 
 
+@pytest.mark.parametrize(
+    ("first_mm", "second_mm", "gouges", "rest_mm"),
+    [
+        (12.0, 12.0, {}, 0.0),
+        (11.95, 12.0, {6: 0.05, 7: 0.05}, 0.0),
+        (12.0, 11.95, {10: 0.05, 11: 0.05}, 0.0),
+        (12.0, 14.0, {}, 2.0),
+    ],
+)
+def test_a_target_is_compared_from_any_side(
+    first_mm: float, second_mm: float, gouges: dict[int, float], rest_mm: float, tmp_path: Path
+) -> None:
+    """The two holes of the table, 12 mm from its axis: one 0.05 mm too deep, or 2 mm too short."""
+    manifold3d = pytest.importorskip("manifold3d")
+    body: Any = manifold3d.Manifold.cylinder(30.0, 20.0, circular_segments=360).translate([0.0, 0.0, -15.0])
+    for angle in (90.0, 210.0):
+        hole = manifold3d.Manifold.cylinder(30.0, 3.0, circular_segments=256).translate([0.0, 0.0, 12.0])
+        body -= hole.rotate([0.0, 90.0, 0.0]).rotate([0.0, 0.0, angle])
+    mesh = body.to_mesh()
+    file = tmp_path / "part.stl"
+    Mesh(np.array(mesh.vert_properties[:, :3], np.float64), np.array(mesh.tri_verts, np.int64)).write_stl(
+        file
+    )
+    text = TABLE.replace("G1 Z12 F400", f"G1 Z{first_mm} F400").replace("G1 Z12\n", f"G1 Z{second_mm}\n")
+    config = load_machine("mill5").model_copy(update={"start": {"Z": 80.0}})
+    found = runner.run(
+        text, config, "fanuc", stock="cylinder=40,-15,15", resolution_mm=0.5, target=str(file), check=False
+    )
+    assert {each.kind for each in found.collisions} == ({ContactKind.GOUGE} if gouges else set())
+    assert {each.line: each.depth_mm for each in found.collisions} == pytest.approx(gouges, abs=0.003)
+    assert found.machined is not None
+    assert found.machined.comparison is not None
+    assert found.machined.comparison.rest_mm == pytest.approx(rest_mm, abs=0.51)
+    assert found.machined.comparison.rest_mm3 == pytest.approx(math.pi * 9.0 * rest_mm, rel=0.2)
+
+
+def test_a_target_with_a_tool_that_undercuts_is_refused() -> None:
+    lines = 'shape = "form"\noutline = [[0, 0], [8, 0], [8, 4], [3, 4]]'
+    config = parse_machine(f"{preset_text('mill3')}\n[tools.1]\n{lines}\n", "m.toml")
+    text = "T1 M6\nS900 M3\nG0 X0 Y0 Z5\nG1 Z-3 F400\nG0 Z5\nM30\n"
+    with pytest.raises(UsageError, match="a target with tools that undercut") as refused:
+        runner.run(text, config, "fanuc", stock="box=-9,-9,-9,9,9,0", target="part.stl", check=False)
+    assert refused.value.hint
+
+
 def test_an_auto_body_has_nothing_where_rapids_come_along() -> None:
     """Both holes are cut whole: what is left out is what a rapid meets before it is cut, not the way out of a hole."""
     config = load_machine("mill5").model_copy(update={"start": {"Z": 80.0}})
@@ -222,10 +267,6 @@ def test_the_surface_of_cells_is_closed_and_has_their_volume() -> None:
         (lambda: Voxels(BOX, float("nan")), "resolution of nan"),
         (lambda: Form("missing.stl").voxels(NOWHERE, {}), "cannot read"),
         (lambda: Form("auto").voxels(NOWHERE, {}), "cuts nothing"),
-        (
-            lambda: Form("box=0,0,0,1,1,1", target="part.stl").voxels(NOWHERE, {}),
-            "a target with turning axes",
-        ),
     ],
 )
 def test_what_no_body_of_points_has_is_refused(wrong: Any, text: str) -> None:

@@ -304,6 +304,12 @@ class BlockRecords:
             )
         return np.asarray(speed * direction, np.float64)
 
+    def surface_clamp(self, tag: int) -> float | None:
+        """Return how fast the spindle may turn where S is a surface speed (m/min), None where it is not."""
+        context = self._contexts.get(tag >> CONTEXT_SHIFT)
+        spindle = None if context is None else context.modal.spindle
+        return spindle.clamp if spindle is not None and spindle.surface_speed else None
+
     def source(self, tag: int) -> ProgramText | None:
         """Return the text that the block of a tag stands in."""
         context = self._contexts.get(tag >> CONTEXT_SHIFT)

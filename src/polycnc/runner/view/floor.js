@@ -1,5 +1,5 @@
 // What helps to read a picture: a grid under the part, program zero with its axes, the axis of a lathe.
-import { CanvasTexture, Group, Sprite, SpriteMaterial, SRGBColorSpace } from "three";
+import { CanvasTexture, Group, Sprite, SpriteMaterial, SRGBColorSpace, Vector3 } from "three";
 import { round125 } from "./format.js";
 import { polyline } from "./lines.js";
 import { css, rgb } from "./theme.js";
@@ -27,7 +27,7 @@ export function floor(box, names, unit, lathe) {
   const big = 0.045 * longest, step = round125(longest * unit.factor / 8) / unit.factor;
   const up = lathe ? 1 : 2, [p, q] = lathe ? [0, 2] : [0, 1];
   const from = [p, q].map((i) => Math.floor((box[i][0] - 0.06 * longest) / step) * step), to = [p, q].map((i) => Math.ceil((box[i][1] + 0.06 * longest) / step) * step);
-  const level = lathe ? box[1][1] + 0.01 * longest : Math.min(box[2][0], 0) - 0.002 * longest;
+  const level = lathe ? box[1][1] + 0.01 * longest : Math.min(box[2][0], 0) - 0.012 * longest;
   const place = (a, b) => { const at = [0, 0, 0]; at[p] = a; at[q] = b; at[up] = level; return at; };
   const grid = [];
   for (let a = from[0]; a <= to[0] + 1e-9; a += step) grid.push(place(a, from[1]), place(a, to[1]), null);
@@ -50,12 +50,19 @@ export function floor(box, names, unit, lathe) {
     for (let a = from[0]; a < to[0]; a += 0.05 * longest) dash.push([a, 0, 0], [a + 0.035 * longest, 0, 0], null);
     add(polyline(dash, { width: 1.5, order: 3 }), css("--soft"));
   }
-  // Labels are as large on the stage whatever its scale; of crowded numbers every other one is left out, and so on.
-  const fit = (pixel_mm) => {
+  // Labels are as large on the stage whatever its scale; of crowded numbers every other one is left out, and so on, and
+  // those that its edges would cut or that its `cover`, at the upper left, hides.
+  const fit = (stage, cover) => {
+    const { pixel_mm } = stage, at = new Vector3();
+    const isClear = (sprite) => {
+      const [w, h] = sprite.size_px.map((px) => px / 2 + 2), { x, y } = stage.project(sprite.getWorldPosition(at), at);
+      const isCovered = cover && x - w < cover.offsetLeft + cover.offsetWidth && y - h < cover.offsetTop + cover.offsetHeight;
+      return x > w && y > h && x < stage.width - w && y < stage.height - h && !isCovered;
+    };
     let skip = 1;
     while (skip * step < 34 * pixel_mm) skip *= 2;
     for (const each of labels) each.scale.set(each.size_px[0] * pixel_mm, each.size_px[1] * pixel_mm, 1);
-    for (const each of numbers) each.visible = Math.abs(Math.round(each.value / step)) % skip === 0;
+    for (const each of numbers) each.visible = Math.abs(Math.round(each.value / step)) % skip === 0 && isClear(each);
   };
   const whole = box.map((each) => [...each]);
   [[p, 0], [q, 1]].forEach(([i, n]) => { whole[i] = [from[n] - 1.6 * big, to[n] + 0.4 * big]; });

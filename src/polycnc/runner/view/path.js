@@ -4,6 +4,8 @@ import { after } from "./format.js";
 import { Lines, polyline } from "./lines.js";
 import { css, paletteColour, rgb, scaled } from "./theme.js";
 
+const NEAR = 0.35;
+
 export class Path {
   constructor(record) {
     this.record = record;
@@ -21,6 +23,7 @@ export class Path {
     this.cuts = this.lines(cuts, 2.6, 2);
     this.rapids = this.lines(rapids, 1.2, 1);
     this.box = this.boxOf(cuts.length ? cuts : rapids);
+    this.between = this.boxOf(this.nearCuts(cuts, rapids));
     this.depths = this.box[2];
     this.all = this.boxOf([...cuts, ...rapids]);
     this.tools = [...new Set([...record.about.tools.map((each) => each.tool), ...record.block_tool])].sort((a, b) => a - b);
@@ -50,6 +53,21 @@ export class Path {
     }
     if (this.record.about.lathe && which.length) { const r = Math.max(...box[2].map(Math.abs)); box[2] = [-r, r]; }
     return which.length ? box : [[-1, 1], [-1, 1], [-1, 1]];
+  }
+
+  // The points of cuts and of rapids from one to the next, where those go no farther from what is cut than NEAR of its size.
+  nearCuts(cuts, rapids) {
+    const room = NEAR * Math.max(...this.box.map(([low, high]) => high - low), 1);
+    const near = (k) => this.box.every(([low, high], i) => this.at[3 * k + i] > low - room && this.at[3 * k + i] < high + room);
+    const found = [...(cuts.length ? cuts : rapids)], isRapid = new Set(rapids), from = cuts[0], to = cuts[cuts.length - 1];
+    for (let k = from; k < to; k++) {
+      let end = k;
+      while (isRapid.has(end)) end++;
+      const run = Array.from({ length: end - k }, (_, n) => k + n);
+      if (run.every(near)) found.push(...run);
+      k = Math.max(end - 1, k);
+    }
+    return found;
   }
 
   usual(cuts) { // 98 % of the cutting time is at most so fast: few fast moves leave the colours to the rest

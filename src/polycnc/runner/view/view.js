@@ -44,9 +44,10 @@ export async function start(buffers) {
   }
   const rest = path.rest(); // what could be read after an alarm
   if (rest) { rest.material.depthTest = !body; part.add(rest.mesh); path.box = path.box.map(([low, high], i) => [Math.min(low, rest.box[i][0]), Math.max(high, rest.box[i][1])]); }
+  path.seen = path.box.map(([low, high], i) => [Math.min(low, path.between[i][0]), Math.max(high, path.between[i][1])]);
   let ground = null;
   const wide = [path.cuts, path.rapids, ...(rest ? [rest] : [])]; // lines that must know how large the stage is
-  stage.before.push(() => { for (const each of wide) each.fit(stage); ground?.fit(stage.pixel_mm); });
+  stage.before.push(() => { for (const each of wide) each.fit(stage); ground?.fit(stage, element("legend")); });
 
   // ---------------------------------------------------------------- what is drawn besides the path
   const extra = {};
@@ -203,7 +204,8 @@ export async function start(buffers) {
     }
     place(here);
     if (body) drawBody();
-    for (const each of [path.cuts, path.rapids]) { each.set("now", now); each.set("faint", now <= 0 && !body ? 1 : body ? 0 : 0.28); }
+    const faint = body?.mesh.visible ? 0 : now <= 0 ? 1 : 0.28; // of what is still to come
+    for (const each of [path.cuts, path.rapids]) { each.set("now", now); each.set("faint", faint); }
     chart.now(now);
     stage.draw();
   }
@@ -321,7 +323,7 @@ export async function start(buffers) {
   for (const rate of [1, 2, 5, 10, 20, 50, 100, 200, 500, 1000]) element("rate").add(new Option(`${rate}×`, rate, rate === 10, rate === 10));
   charts.forEach((each, i) => element("shown").add(new Option(each.name, i)));
   const shownViews = lathe ? ["Front", "3-D"] : directions;
-  const look = (name) => stage.look(name, lathe ? ground.box : path.box, lathe ? 0.97 : 0.8);
+  const look = (name) => stage.look(name, lathe ? ground.box : body?.mesh.visible ? path.box : path.seen, lathe ? 0.97 : 0.8);
   shownViews.forEach((name) => element("views").append(make("button", { type: "button", textContent: lathe && name === "Front" ? "Profile" : name, onclick: () => look(name) })));
   element("views").append(make("button", { type: "button", textContent: "All", title: "Everything, rapids too", onclick: () => stage.look(shownViews[0], path.all) }));
   for (const name of ["work", "machine", "to go"]) element("places").append(make("button", { type: "button", textContent: name, onclick: () => choose(name) }));
@@ -367,7 +369,8 @@ export async function start(buffers) {
     else if (how) save(await { stl, "3mf": threeMf }[how](body.surface()), name);
     if (how) say(`${name}${how === "png" ? "" : ", mm from program zero"}`);
   };
-  for (const id of ["stock", "section", "cut"]) element(id).oninput = () => drawBody();
+  element("stock").oninput = () => goTo(now);
+  for (const id of ["section", "cut"]) element(id).oninput = () => drawBody();
   element("frames").hidden = !about.chain.length;
   element("frame").onchange = () => goTo(now);
   element("slider").oninput = () => goTo(Number(element("slider").value));

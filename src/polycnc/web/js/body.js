@@ -76,6 +76,8 @@ export class Body {
   // Leave out what is beyond a plane across an axis; null for all.
   cutAt(axis, at) { this.uniforms.section.value.set(axis === 0 ? 1 : 0, axis === 1 ? -1 : 0, 0, axis === null ? 1 : axis === 1 ? -at : at); }
 
+  get isSection() { const { value: out } = this.uniforms.section; return Math.abs(out.x) + Math.abs(out.y) + Math.abs(out.z) > 0; }
+
   isLeftOut(place) { const { value: out } = this.uniforms.section; return out.x * place[0] + out.y * place[1] + out.z * place[2] > out.w; }
 
   timeOf(stamp) { return stamp ? this.ends[stamp - 1] : null; }

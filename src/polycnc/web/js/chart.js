@@ -56,7 +56,7 @@ export class Chart {
     };
     const clear = { points: { show: false } };
     this.plot = new uPlot({
-      ...this.size, legend: { show: false }, padding: [10, 12, 0, 0],
+      ...this.size, legend: { show: false }, padding: [10, 24, 0, 0],
       scales: { x: { time: false, range: () => this.window }, y: { range } },
       axes: [{ ...axis, size: 30, values: (u, all) => all.map((t) => `${Number(t.toFixed(6))} s`) }, { ...axis, size: 62, label: unit, labelSize: 16, labelFont: "12px system-ui" }],
       series: [{}, { ...clear, stroke: line, width: 1.5 }, { ...clear, stroke: band, width: 0 }, { ...clear, stroke: band, width: 0 }, { ...clear, stroke: line, width: 1.5 }],

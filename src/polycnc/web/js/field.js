@@ -63,7 +63,7 @@ export class Field extends Body {
     this.texture.minFilter = this.texture.magFilter = NearestFilter;
     this.texture.needsUpdate = true;
     Object.assign(this.uniforms, { field: { value: this.texture }, size: { value: new Vector2(nx, ny) } });
-    const geometry = Field.geometry(nx, ny), material = (base) => new ShaderMaterial({ vertexShader: VERTEX, fragmentShader: FRAGMENT, uniforms: { ...this.uniforms, base: { value: base } }, side: DoubleSide, polygonOffset: true, polygonOffsetFactor: 1.5, polygonOffsetUnits: 4 });
+    const geometry = Field.geometry(nx, ny), material = (base) => new ShaderMaterial({ vertexShader: VERTEX, fragmentShader: FRAGMENT, uniforms: { ...this.uniforms, base: { value: base } }, side: DoubleSide, polygonOffset: base === 0, polygonOffsetFactor: 1.5, polygonOffsetUnits: 4 });
     this.mesh = new Group();
     for (const base of [0, 1]) this.mesh.add(Body.surfaceOf(geometry, material(base)));
     this.mesh.position.set(...place);
@@ -136,6 +136,6 @@ export class Field extends Body {
     return null;
   }
 
-  // The bottom is seen from below only.
-  seenFrom(camera, target) { this.mesh.children[1].visible = camera.z < target.z; }
+  // The bottom is seen from below, and through a section from within.
+  seenFrom(camera, target) { this.mesh.children[1].visible = camera.z < target.z || this.isSection; }
 }

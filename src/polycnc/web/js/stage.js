@@ -80,6 +80,7 @@ export class Stage {
 
   render() {
     this.waiting = false;
+    this.camera.updateMatrixWorld(); // for what is projected before the picture
     for (const call of this.before) call();
     this.renderer.render(this.scene, this.camera);
   }
