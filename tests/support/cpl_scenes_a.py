@@ -2,15 +2,16 @@
 
 A scene is a text of sections. `== title` begins a program, `@ NAME` another file beside it; `=? title` begins a table
 of expressions (`? EXPRESSION` after the lines that come before), each assigned to a variable of each type; `=! title`
-one of statements (`! STATEMENT`), each a program of its own. `keys A B` and `cycles N` stand on lines of their own
-after a title. Everything that begins with `->` or stands after `=>` is what came of it.
+one of statements (`! STATEMENT`), each a program of its own; `=* title` one of statements that are executed in other
+surroundings too (`SURROUNDINGS`), of which stands what is other than in the first. `keys A B` and `cycles N` stand on
+lines of their own after a title. Everything that begins with `->` or stands after `=>` is what came of it.
 """
 
 from __future__ import annotations
 
 import re
 import zlib
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path
 
 import numpy as np
@@ -64,7 +65,7 @@ def numbered(lines: Iterable[str], first: int = 10, step: int = 10) -> str:
     """Return a program whose lines have numbers where they have none, or a bar that says so."""
     return "".join(
         f"{line.removeprefix('|')}\n"
-        if re.match(r"N?[0-9]|[|(%]|M30|$", line)
+        if re.match(r"[Nn]?[0-9]|[|(%]|M30|$", line)
         else f"{first + step * place} {line}\n"
         for place, line in enumerate(lines)
     )
@@ -170,6 +171,14 @@ class Bench:
         yield from screen.news(self._screens[channel])
         self._permanent, self._axes, self._files = permanent, axes, files
         self._screens[channel] = screen
+
+    def forget(self, channel: int) -> None:
+        """Erase the screen and all files that programs have written; it is no news."""
+        self.pnc.screen(channel).clear()
+        self._screens[channel] = Screen(self.pnc.screen(channel))
+        for name in self._contents():
+            (self.folder / name).unlink()
+        self.forget_files()
 
     def _variables(self, first: str) -> dict[str, str]:
         return {
@@ -301,9 +310,59 @@ class Screen:
         return "".join(f"| {colour} on {background}" for colour, background in sorted(found))
 
 
+def _small(text: str) -> str:
+    """Return a program in small letters; what stands in quotation marks stays."""
+    return "".join(part if part[:1] == '"' else part.lower() for part in re.split(r'("[^"]*")', text))
+
+
+def _dense(text: str) -> str:
+    """Return a program without the blanks that are not needed."""
+    parts = re.split(r'("[^"]*")', text)
+    return "".join(
+        part if part[:1] == '"' else re.sub(r" *([-+*/=<>(),;:\[\]]) *", r"\1", part) for part in parts
+    )
+
+
+def _wide(text: str) -> str:
+    """Return a program with blanks and tabs wherever they may stand."""
+    parts = re.split(r'("[^"]*"|<>|<=|>=)', text)
+    return "".join(
+        part if place % 2 else re.sub(r"([-+*/=(),;:\]])", " \t \\1  ", part)
+        for place, part in enumerate(parts)
+    )
+
+
+SURROUNDINGS: dict[str, tuple[Callable[[str], str], str, int]] = {
+    "alone": (str, "{}", 1),
+    "small letters": (_small, "{}", 1),
+    "no blanks": (_dense, "{}", 1),
+    "many blanks": (_wide, "{}", 1),
+    "in structures": (str, "FOR Q%=1 TO 2\nIF Q%=2 THEN\n{}\nENDIF\nNEXT", 1),
+    "in a sub-program": (str, "CALL AGAIN", 1),
+    "in channel 2": (str, "{}", 2),
+}
+"""How a statement is written, what stands around it, and in which channel."""
+
+
+def _again(lines: list[str], bench: Bench) -> str:
+    """Return what comes of a statement alone, and what is other elsewhere."""
+    found: dict[str, str] = {}
+    for name, (written, around, channel) in [("", SURROUNDINGS["alone"]), *SURROUNDINGS.items()]:
+        bench.forget(channel)
+        body = written("\n".join(lines))
+        if around == "CALL AGAIN":
+            bench.write("AGAIN", numbered(body.split("\n"), 1, 1))
+        told = " ; ".join(bench.execute(numbered(around.format(body).split("\n"), 1, 1), channel=channel))
+        told = re.sub(r"(error|line|warning) (AGAIN:)?[\d:]+", r"\1", told) or "nothing"
+        if name and told not in found.values():  # the first time tells what stays behind as well
+            found[name] = told
+        bench.pnc.reset(channel=channel)
+    return " | ".join(told if name == "alone" else f"{name}: {told}" for name, told in found.items())
+
+
 def rewritten(text: str, bench: Bench) -> str:
     """Return a scene with what comes of it now."""
-    head, *sections = re.split(r"(?m)^(?==[=?!] )", text)
+    head, *sections = re.split(r"(?m)^(?==[=?!*] )", text)
     return head + "".join(_section(section, bench) for section in sections)
 
 
@@ -319,6 +378,8 @@ def _section(section: str, bench: Bench) -> str:
     bodies = [item[2:].strip() for item in items]
     if kind == "=?":
         found = list(bench.evaluate(before, bodies))
+    elif kind == "=*":
+        found = [_again([*before, *body.split(" / ")], bench) for body in bodies]
     else:
         found = [
             " ; ".join(bench.execute(numbered([*before, *body.split(" / ")], 1, 1))) or "nothing"
