@@ -1,17 +1,13 @@
 """CPL programs on a living control: their texts go in, and everything that they leave behind is written beside them.
 
-A scene is a text of sections. `== title` begins a program, `@ NAME` another file beside it; `=? title` begins a table
-of expressions (`? EXPRESSION` after the lines that come before), each assigned to a variable of each type; `=! title`
-one of statements (`! STATEMENT`), each a program of its own; `=* title` one of statements that are executed in other
-surroundings too (`SURROUNDINGS`), of which stands what is other than in the first. `keys A B` and `cycles N` stand on
-lines of their own after a title. Everything that begins with `->` or stands after `=>` is what came of it.
+What a scene is written like stands in `cpl_scenes_a_text`.
 """
 
 from __future__ import annotations
 
 import re
 import zlib
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 
 import numpy as np
@@ -30,7 +26,8 @@ MACHINE = (
 )  # fmt: skip
 _OURS = re.compile(r"cpl\.store|machine\.toml|main\.npg|.*\.l$|.*-(wal|shm|journal)$|\.")
 _SINKS = {"%": "#I{}%", "R": "#R{}", "!": "#D{}!", "?": "#B{}?", "$": "#S{}$"}
-_CYCLES = 3000
+CYCLES = 3000
+MAIN, BESIDE = "main.npg", "beside.npg"
 _TOGETHER = 9
 _FONT = (0, 9, 0, 0, 0)
 _COLOURS = (2, 0)
@@ -65,7 +62,7 @@ def numbered(lines: Iterable[str], first: int = 10, step: int = 10) -> str:
     """Return a program whose lines have numbers where they have none, or a bar that says so."""
     return "".join(
         f"{line.removeprefix('|')}\n"
-        if re.match(r"[Nn]?[0-9]|[|(%]|M30|$", line)
+        if re.match(r"[Nn]?[0-9]|[/|(%]|M30|$", line)
         else f"{first + step * place} {line}\n"
         for place, line in enumerate(lines)
     )
@@ -107,9 +104,14 @@ class Bench:
         self._files = self._contents()
 
     def execute(
-        self, text: str, cycles: int = _CYCLES, keys: Iterable[str] = (), channel: int = 1
+        self,
+        text: str,
+        cycles: int = CYCLES,
+        keys: Iterable[str] = (),
+        channel: int = 1,
+        beside: str = "",
     ) -> Iterator[str]:
-        """Execute a program; yield how it ended and all that is other than before."""
+        """Execute a program, and `beside` in the other channel; yield how it ended and what is other than before."""
         pnc = self.pnc
         pnc.reset(channel=channel)
         self._axes = self._places()
@@ -118,6 +120,11 @@ class Bench:
         pnc.select_program("main.npg", channel=channel)
         for key in keys:
             pnc.press(key, channel=channel)
+        if beside:
+            self.write(BESIDE, beside)
+            pnc.reset(channel=3 - channel)
+            pnc.select_program(BESIDE, channel=3 - channel)
+            pnc.cycle_start(channel=3 - channel)
         try:
             pnc.cycle_start(channel=channel)
         except ControlError as error:
@@ -130,6 +137,21 @@ class Bench:
         yield from self._errors()
         yield from self._messages(channel)
         yield from self.news(channel)
+
+    def edited(self, block: str, keys: Iterable[str]) -> Iterator[str]:
+        """Let the dialog program of the editor work on a block; yield what has become of it."""
+        try:
+            selected = self.pnc.edit_block(block)
+        except ControlError as error:
+            yield f"refused: {error.what}"
+            return
+        for key in keys:
+            self.pnc.press(key)
+        self.pnc.advance(CYCLES, until=lambda: self.pnc.run_state(1) is not RunState.ACTIVE)
+        yield from self._errors()
+        yield from self._messages(1)
+        yield f"block {selected.text}"
+        yield from self.news(1)
 
     def _at_rest(self) -> bool:
         return not any(axis.moving for axis in self.pnc.axes.values())
@@ -308,113 +330,3 @@ class Screen:
             if line == number and tuple(cell[1:]) != _COLOURS
         }
         return "".join(f"| {colour} on {background}" for colour, background in sorted(found))
-
-
-def _small(text: str) -> str:
-    """Return a program in small letters; what stands in quotation marks stays."""
-    return "".join(part if part[:1] == '"' else part.lower() for part in re.split(r'("[^"]*")', text))
-
-
-def _dense(text: str) -> str:
-    """Return a program without the blanks that are not needed."""
-    parts = re.split(r'("[^"]*")', text)
-    return "".join(
-        part if part[:1] == '"' else re.sub(r" *([-+*/=<>(),;:\[\]]) *", r"\1", part) for part in parts
-    )
-
-
-def _wide(text: str) -> str:
-    """Return a program with blanks and tabs wherever they may stand."""
-    parts = re.split(r'("[^"]*"|<>|<=|>=)', text)
-    return "".join(
-        part if place % 2 else re.sub(r"([-+*/=(),;:\]])", " \t \\1  ", part)
-        for place, part in enumerate(parts)
-    )
-
-
-SURROUNDINGS: dict[str, tuple[Callable[[str], str], str, int]] = {
-    "alone": (str, "{}", 1),
-    "small letters": (_small, "{}", 1),
-    "no blanks": (_dense, "{}", 1),
-    "many blanks": (_wide, "{}", 1),
-    "in structures": (str, "FOR Q%=1 TO 2\nIF Q%=2 THEN\n{}\nENDIF\nNEXT", 1),
-    "in a sub-program": (str, "CALL AGAIN", 1),
-    "in channel 2": (str, "{}", 2),
-}
-"""How a statement is written, what stands around it, and in which channel."""
-
-
-def _again(lines: list[str], bench: Bench) -> str:
-    """Return what comes of a statement alone, and what is other elsewhere."""
-    found: dict[str, str] = {}
-    for name, (written, around, channel) in [("", SURROUNDINGS["alone"]), *SURROUNDINGS.items()]:
-        bench.forget(channel)
-        body = written("\n".join(lines))
-        if around == "CALL AGAIN":
-            bench.write("AGAIN", numbered(body.split("\n"), 1, 1))
-        told = " ; ".join(bench.execute(numbered(around.format(body).split("\n"), 1, 1), channel=channel))
-        told = re.sub(r"(error|line|warning) (AGAIN:)?[\d:]+", r"\1", told) or "nothing"
-        if name and told not in found.values():  # the first time tells what stays behind as well
-            found[name] = told
-        bench.pnc.reset(channel=channel)
-    return " | ".join(told if name == "alone" else f"{name}: {told}" for name, told in found.items())
-
-
-def rewritten(text: str, bench: Bench) -> str:
-    """Return a scene with what comes of it now."""
-    head, *sections = re.split(r"(?m)^(?==[=?!*] )", text)
-    return head + "".join(_section(section, bench) for section in sections)
-
-
-def _section(section: str, bench: Bench) -> str:
-    lines = [line for line in section.rstrip("\n").split("\n") if not line.startswith("->")]
-    kind = lines[0][:2]
-    if kind == "==":
-        told = list(_executed(lines[1:], bench))
-        return "\n".join([*lines, *(f"-> {each}" for each in told or ["nothing"])]) + "\n\n"
-    mark = "? " if kind == "=?" else "! "
-    items = [line.partition(" => ")[0] for line in lines if line.startswith(mark)]
-    before = [line for line in lines[1:] if not line.startswith(mark) and line]
-    bodies = [item[2:].strip() for item in items]
-    if kind == "=?":
-        found = list(bench.evaluate(before, bodies))
-    elif kind == "=*":
-        found = [_again([*before, *body.split(" / ")], bench) for body in bodies]
-    else:
-        found = [
-            " ; ".join(bench.execute(numbered([*before, *body.split(" / ")], 1, 1))) or "nothing"
-            for body in bodies
-        ]
-    width = max(map(len, items))
-    rows = [f"{item:{width}} => {each}" for item, each in zip(items, found, strict=True)]
-    return "\n".join([lines[0], *before, *rows]) + "\n\n"
-
-
-def _executed(lines: list[str], bench: Bench) -> Iterator[str]:
-    files: dict[str, list[str]] = {"main.npg": []}
-    name, keys, cycles, restarts = "main.npg", list[str](), _CYCLES, False
-    channel = 1
-    for line in lines:
-        if line.startswith("@ "):
-            name = line[2:]
-            files[name] = []
-        elif line.startswith("keys "):
-            keys = line.split()[1:]
-        elif line.startswith("channel "):
-            channel = int(line.split()[1])
-        elif line.startswith("cycles "):
-            cycles = int(line.split()[1])
-        elif line == "restart":
-            restarts = True
-        elif line:
-            files[name].append(line)
-    for name, content in files.items():
-        if name != "main.npg":
-            bench.write(name, numbered(content))
-    if restarts:
-        bench.restart()
-    yield from bench.execute(numbered(files["main.npg"]), cycles, keys, channel)
-    for name in files:
-        if name != "main.npg":
-            (bench.folder / name).unlink(missing_ok=True)
-    bench.forget_files()
