@@ -74,6 +74,8 @@ class StoredFile:
         Raises:
             Fault: The disk is full, or something else is wrong with it; nothing has been changed.
         """
+        if not text:
+            return
         old = bytes(self.data[at : at + len(text)])
         grows = at + len(text) > len(self.data)
         self._store(at, text + END if grows or not self.data else text, old + END if grows else old)
@@ -123,7 +125,6 @@ class StoredFile:
     def _store(self, at: int, text: bytes, old: bytes) -> None:
         """Write text at a place on disk, where `old` stands; go back to that if it fails."""
         assert self._descriptor is not None
-        text = text or END
         try:
             _put(self._descriptor, at, text)
             if text.endswith(END):
