@@ -125,6 +125,7 @@ class StoredFile:
     def _store(self, at: int, text: bytes, old: bytes) -> None:
         """Write text at a place on disk, where `old` stands; go back to that if it fails."""
         assert self._descriptor is not None
+        text = text or END
         try:
             _put(self._descriptor, at, text)
             if text.endswith(END):
