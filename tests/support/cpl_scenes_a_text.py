@@ -47,8 +47,7 @@ SURROUNDINGS: dict[str, tuple[Callable[[str], str], str, int]] = {
     "small letters": (_small, "{}", 1),
     "no blanks": (_dense, "{}", 1),
     "many blanks": (_wide, "{}", 1),
-    "in structures": (str, "FOR Q%=1 TO 2\nIF Q%=2 THEN\n{}\nENDIF\nNEXT", 1),
-    "in a sub-program": (str, "CALL AGAIN", 1),
+    "in structures of a sub-program": (str, "FOR Q%=1 TO 2\nIF Q%=2 THEN\n{}\nENDIF\nNEXT", 1),
     "in channel 2": (str, "{}", 2),
 }
 """How a statement is written, what stands around it, and in which channel."""
@@ -57,14 +56,16 @@ SURROUNDINGS: dict[str, tuple[Callable[[str], str], str, int]] = {
 def _again(lines: list[str], bench: Bench) -> str:
     """Return what comes of a statement alone, and what is other elsewhere."""
     found: dict[str, str] = {}
-    for name, (written, around, channel) in [("", SURROUNDINGS["alone"]), *SURROUNDINGS.items()]:
+    for name, (written, around, channel) in SURROUNDINGS.items():
         bench.forget(channel)
         body = written("\n".join(lines))
-        if around == "CALL AGAIN":
-            bench.write("AGAIN", numbered(body.split("\n"), 1, 1))
-        told = " ; ".join(bench.execute(numbered(around.format(body).split("\n"), 1, 1), channel=channel))
+        program = numbered(around.format(body).split("\n"), 1, 1)
+        if around != "{}":
+            bench.write("AGAIN", program)
+            program = "1 CALL AGAIN\n"
+        told = " ; ".join(bench.execute(program, channel=channel))
         told = re.sub(r"(error|line|warning) (AGAIN:)?[\d:]+", r"\1", told) or "nothing"
-        if name and told not in found.values():  # the first time tells what stays behind as well
+        if told not in found.values():
             found[name] = told
         bench.pnc.reset(channel=channel)
     return " | ".join(told if name == "alone" else f"{name}: {told}" for name, told in found.items())
