@@ -1,9 +1,6 @@
 """CPL programs on a living control: their texts go in, and everything that they leave behind is written beside them.
 
-A scene is a text of sections. `== title` begins a program, `@ NAME` another file beside it; `=? title` begins a table
-of expressions (`? EXPRESSION` after the lines that come before), each assigned to a variable of each type; `=! title`
-one of statements (`! STATEMENT`), each a program of its own. `keys A B` and `cycles N` stand on lines of their own
-after a title. Everything that begins with `->` or stands after `=>` is what came of it.
+What a scene is written like stands in `cpl_scenes_a_text`.
 """
 
 from __future__ import annotations
@@ -29,7 +26,8 @@ MACHINE = (
 )  # fmt: skip
 _OURS = re.compile(r"cpl\.store|machine\.toml|main\.npg|.*\.l$|.*-(wal|shm|journal)$|\.")
 _SINKS = {"%": "#I{}%", "R": "#R{}", "!": "#D{}!", "?": "#B{}?", "$": "#S{}$"}
-_CYCLES = 3000
+CYCLES = 3000
+MAIN, BESIDE = "main.npg", "beside.npg"
 _TOGETHER = 9
 _FONT = (0, 9, 0, 0, 0)
 _COLOURS = (2, 0)
@@ -64,7 +62,7 @@ def numbered(lines: Iterable[str], first: int = 10, step: int = 10) -> str:
     """Return a program whose lines have numbers where they have none, or a bar that says so."""
     return "".join(
         f"{line.removeprefix('|')}\n"
-        if re.match(r"N?[0-9]|[|(%]|M30|$", line)
+        if re.match(r"[Nn]?[0-9]|[/|(%]|M30|$", line)
         else f"{first + step * place} {line}\n"
         for place, line in enumerate(lines)
     )
@@ -106,9 +104,14 @@ class Bench:
         self._files = self._contents()
 
     def execute(
-        self, text: str, cycles: int = _CYCLES, keys: Iterable[str] = (), channel: int = 1
+        self,
+        text: str,
+        cycles: int = CYCLES,
+        keys: Iterable[str] = (),
+        channel: int = 1,
+        beside: str = "",
     ) -> Iterator[str]:
-        """Execute a program; yield how it ended and all that is other than before."""
+        """Execute a program, and `beside` in the other channel; yield how it ended and what is other than before."""
         pnc = self.pnc
         pnc.reset(channel=channel)
         self._axes = self._places()
@@ -117,6 +120,11 @@ class Bench:
         pnc.select_program("main.npg", channel=channel)
         for key in keys:
             pnc.press(key, channel=channel)
+        if beside:
+            self.write(BESIDE, beside)
+            pnc.reset(channel=3 - channel)
+            pnc.select_program(BESIDE, channel=3 - channel)
+            pnc.cycle_start(channel=3 - channel)
         try:
             pnc.cycle_start(channel=channel)
         except ControlError as error:
@@ -129,6 +137,21 @@ class Bench:
         yield from self._errors()
         yield from self._messages(channel)
         yield from self.news(channel)
+
+    def edited(self, block: str, keys: Iterable[str]) -> Iterator[str]:
+        """Let the dialog program of the editor work on a block; yield what has become of it."""
+        try:
+            selected = self.pnc.edit_block(block)
+        except ControlError as error:
+            yield f"refused: {error.what}"
+            return
+        for key in keys:
+            self.pnc.press(key)
+        self.pnc.advance(CYCLES, until=lambda: self.pnc.run_state(1) is not RunState.ACTIVE)
+        yield from self._errors()
+        yield from self._messages(1)
+        yield f"block {selected.text}"
+        yield from self.news(1)
 
     def _at_rest(self) -> bool:
         return not any(axis.moving for axis in self.pnc.axes.values())
@@ -170,6 +193,14 @@ class Bench:
         yield from screen.news(self._screens[channel])
         self._permanent, self._axes, self._files = permanent, axes, files
         self._screens[channel] = screen
+
+    def forget(self, channel: int) -> None:
+        """Erase the screen and all files that programs have written; it is no news."""
+        self.pnc.screen(channel).clear()
+        self._screens[channel] = Screen(self.pnc.screen(channel))
+        for name in self._contents():
+            (self.folder / name).unlink()
+        self.forget_files()
 
     def _variables(self, first: str) -> dict[str, str]:
         return {
@@ -299,61 +330,3 @@ class Screen:
             if line == number and tuple(cell[1:]) != _COLOURS
         }
         return "".join(f"| {colour} on {background}" for colour, background in sorted(found))
-
-
-def rewritten(text: str, bench: Bench) -> str:
-    """Return a scene with what comes of it now."""
-    head, *sections = re.split(r"(?m)^(?==[=?!] )", text)
-    return head + "".join(_section(section, bench) for section in sections)
-
-
-def _section(section: str, bench: Bench) -> str:
-    lines = [line for line in section.rstrip("\n").split("\n") if not line.startswith("->")]
-    kind = lines[0][:2]
-    if kind == "==":
-        told = list(_executed(lines[1:], bench))
-        return "\n".join([*lines, *(f"-> {each}" for each in told or ["nothing"])]) + "\n\n"
-    mark = "? " if kind == "=?" else "! "
-    items = [line.partition(" => ")[0] for line in lines if line.startswith(mark)]
-    before = [line for line in lines[1:] if not line.startswith(mark) and line]
-    bodies = [item[2:].strip() for item in items]
-    if kind == "=?":
-        found = list(bench.evaluate(before, bodies))
-    else:
-        found = [
-            " ; ".join(bench.execute(numbered([*before, *body.split(" / ")], 1, 1))) or "nothing"
-            for body in bodies
-        ]
-    width = max(map(len, items))
-    rows = [f"{item:{width}} => {each}" for item, each in zip(items, found, strict=True)]
-    return "\n".join([lines[0], *before, *rows]) + "\n\n"
-
-
-def _executed(lines: list[str], bench: Bench) -> Iterator[str]:
-    files: dict[str, list[str]] = {"main.npg": []}
-    name, keys, cycles, restarts = "main.npg", list[str](), _CYCLES, False
-    channel = 1
-    for line in lines:
-        if line.startswith("@ "):
-            name = line[2:]
-            files[name] = []
-        elif line.startswith("keys "):
-            keys = line.split()[1:]
-        elif line.startswith("channel "):
-            channel = int(line.split()[1])
-        elif line.startswith("cycles "):
-            cycles = int(line.split()[1])
-        elif line == "restart":
-            restarts = True
-        elif line:
-            files[name].append(line)
-    for name, content in files.items():
-        if name != "main.npg":
-            bench.write(name, numbered(content))
-    if restarts:
-        bench.restart()
-    yield from bench.execute(numbered(files["main.npg"]), cycles, keys, channel)
-    for name in files:
-        if name != "main.npg":
-            (bench.folder / name).unlink(missing_ok=True)
-    bench.forget_files()

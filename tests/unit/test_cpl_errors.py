@@ -7,7 +7,9 @@ from pathlib import Path
 
 import pytest
 
+from polycnc.controllers.bosch.system import Drives
 from polycnc.nc import ProgramText
+from polycnc.nc.cpl import Fault
 from polycnc.runner import run
 from support.cpl_runs import Root
 
@@ -217,3 +219,18 @@ def test_a_loop_that_asks_the_clock_has_longer(tmp_path: Path) -> None:
     )
     result = run(text, "mill3", "bosch", root=tmp_path)
     assert (result.alarms, result.end_position_mm["X"]) == ([], 7)
+
+
+@pytest.mark.covers("cpl.err.SCS_LIST", "cpl.SCS", "cpl.SCSL")
+@pytest.mark.parametrize("elements", [[], [7], (7, 8), ["a"]])
+def test_a_list_of_a_drive_is_one_however_long_it_is(elements: list[int | str]) -> None:
+    written: list[list[str]] = []
+    drives = Drives(
+        physical=lambda axis: 1,
+        read=lambda axis, ident: elements,
+        write=lambda name, lines: written.append(list(lines)),
+    )
+    with pytest.raises(Fault, match="INVALID PARAMETER"):
+        drives.scs(1, "S", 17)
+    assert drives.scsl(1, "S", 17, "LIST") == 0
+    assert written == [[str(each) for each in elements]]

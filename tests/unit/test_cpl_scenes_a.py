@@ -13,7 +13,8 @@ from pathlib import Path
 import pytest
 
 from support.cpl_rows import rows_of
-from support.cpl_scenes_a import Bench, rewritten
+from support.cpl_scenes_a import Bench
+from support.cpl_scenes_a_text import rewritten
 
 RECORDED = Path(__file__).resolve().parents[1] / "golden" / "cpl_a"
 

@@ -31,7 +31,7 @@ RESERVED = frozenset(FUNCTIONS) | UNUSED | _KEYWORDS | frozenset(_OTHERS)
 
 LEXICON = Lexicon(
     (
-        ("name", r"(?:PRN|INP)\#|[#@]?[A-Za-z_][A-Za-z0-9_]*[%!?$]?|@[0-9]+[A-Za-z0-9_]*%?"),
+        ("name", r"(?i:PRN|INP)\#|[#@]?[A-Za-z_][A-Za-z0-9_]*[%!?$]?|@[0-9]+[A-Za-z0-9_]*%?"),
         ("number", r"[0-9]+(?:\.[0-9]*)?|\.[0-9]+"),
         ("text", r'"[^"]*"'),
         ("label", r"\.[A-Za-z][^\s:,]*"),

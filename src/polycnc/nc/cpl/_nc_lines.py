@@ -128,7 +128,9 @@ def _sub_call(
     """Return a call, and where its remarks begin."""
     found = numbered or named
     assert found is not None
-    address, name = ((found[1] or found[3]).upper(), found[2] or found[4]) if numbered else ("P", found[1])
+    address, name = ("P", found[1])
+    if numbered:
+        address, name = (found[1] or found[3]).upper(), (found[2] or found[4]).lstrip("0") or "0"
     after = found.end()
     arguments: tuple[Expression | None, ...] = ()
     if text[after:end].startswith("["):

@@ -74,6 +74,8 @@ class StoredFile:
         Raises:
             Fault: The disk is full, or something else is wrong with it; nothing has been changed.
         """
+        if not text:
+            return
         old = bytes(self.data[at : at + len(text)])
         grows = at + len(text) > len(self.data)
         self._store(at, text + END if grows or not self.data else text, old + END if grows else old)
