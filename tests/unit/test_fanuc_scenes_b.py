@@ -16,19 +16,22 @@ from polycnc.conformance import State, load_conformance
 from support import (
     fanuc_scenes_b_calls,
     fanuc_scenes_b_history,
+    fanuc_scenes_b_matrix,
     fanuc_scenes_b_motion,
     fanuc_scenes_b_panel,
     fanuc_scenes_b_state,
 )
+from support.fanuc_rows_shown import rows_shown
 from support.fanuc_scenes_b import Bench
 
 RECORDED = Path(__file__).parents[1] / "golden" / "fanuc_b"
 PARTS = (
     fanuc_scenes_b_panel, fanuc_scenes_b_motion, fanuc_scenes_b_state, fanuc_scenes_b_history, fanuc_scenes_b_calls,
+    fanuc_scenes_b_matrix,
 )  # fmt: skip
 SCENES: dict[str, Callable[[Bench], None]] = {act.__name__: act for part in PARTS for act in part.SCENES}
 
-# What each scene shows of the manual.
+# What each scene shows of the manual beside what follows from its lines by themselves.
 SHOWS = {
     "panel_values": r"cnc_(rd|wr)opnlsgnl.*|IODBSGNL.*",
     "panel_at_work": r"cnc_wropnlsgnl|IODBSGNL.*|ODBST|ODBST\.(aut|run)\b.*",
@@ -63,6 +66,10 @@ SHOWS = {
         r"cnc_(stop|start|clear|rd)ophis.*|cnc_rdalmhis.*|ODBHIS(?!\.(alm_grp|sig)).*|ODBAHIS.*"
         r"|concept\.history.*"
     ),
+    "reads_in_states": r"cnc_modal\.type\.(0_20|100_126|200_205)|pmc_rdpmcinfo|ODBPMCINF.*",
+    "signals_in_states": r"ODBST|ODBST\.(aut|run|motion|mstb|emergency|alarm)",
+    "panel_in_states": r"ODBST|ODBST\.(aut|run|motion|mstb|emergency|alarm)",
+    "commands_in_states": r"param\.80.*|ODBEXEC\.state.*|concept\.direct_command",
     "faults": (
         r"cnc_(opdi|exebufstat|finstate|setfin|refpoint|abspoint|incpoint|dwell|coordre)\.err\.EW_BUSY"
         r"|common\.handle2"
@@ -86,7 +93,9 @@ ELSEWHERE = re.compile(r"fanuc\.(modal\.G\.20\..*|.*EW_OK)")
 def shown(name: str) -> list[str]:
     """Return the rows that a scene shows."""
     wanted = re.compile(rf"fanuc\.({SHOWS.get(name, '')}{'|' + OF_ALL if name in AT_WORK else ''})")
-    return [row for row in STATED if wanted.fullmatch(row) and not ELSEWHERE.fullmatch(row)]
+    file = RECORDED / f"{name}.txt"
+    seen = {f"fanuc.{row}" for row in rows_shown(file.read_text(encoding="utf-8") if file.exists() else "")}
+    return [row for row in STATED if (row in seen or wanted.fullmatch(row)) and not ELSEWHERE.fullmatch(row)]
 
 
 @pytest.mark.parametrize(
