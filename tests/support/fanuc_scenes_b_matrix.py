@@ -10,7 +10,7 @@ from typing import Any
 
 from polycnc.cnc import Answer, Function
 from polycnc.controllers.fanuc import fwlib
-from support.fanuc_scenes_b import Bench, opdi, panel, plain, positions
+from support.fanuc_scenes_b import LETTERS, Bench, opdi, panel, plain, positions
 from support.fanuc_scenes_b_motion import command, signal
 
 AXES = 4
@@ -101,7 +101,8 @@ def _receiving(b: Bench) -> None:
 
 STATES: dict[str, Callable[[Bench], None]] = {
     "at rest": lambda b: None, "a program runs": _running, "a program is held": _held,
-    "a dwell": lambda b: _running(b, 1500), "a function waits": lambda b: _running(b, 4500), "stopped after a block": _single,
+    "a dwell": lambda b: _running(b, 1500), "a function waits": lambda b: _running(b, 4500),
+    "stopped after a block": _single,
     "MDI runs": _mdi, "jogging": _moved_by_hand("JOG"), "increments": _moved_by_hand("INC"),
     "reference return": _moved_by_hand("REF"), "EDIT": _in("EDIT"), "handle": _in("HND"), "RMT": _in("RMT"),
     "direct commands": _direct, "direct commands are held": _direct_held, "an alarm": _alarm,
@@ -121,6 +122,45 @@ READS: tuple[tuple[Any, ...], ...] = (
     ("pmc_rdpmcinfo", 1),
 )  # fmt: skip
 """Calls that read, of which a look shows no more than a part."""
+FAR = positions((1, 5), (5, 5))
+REFUSED: tuple[tuple[Any, ...], ...] = (
+    ("cnc_rdophistry", 0, 1, 22), ("cnc_rdophistry", 1, 1, 13), ("cnc_rdalmhistry", 0, 1, 102),
+    ("cnc_rdalmhistry", 1, 1, 53),
+    ("cnc_clearophis", 2), ("cnc_wrhissgnl", fwlib.IODBSIG(type=21)), ("cnc_opdi", 5, opdi(1)),
+    ("cnc_opdi", 2, opdi(2)),
+    ("cnc_opdi", 9, opdi(6)), ("cnc_opdi", 4, opdi(0x40)), ("cnc_opdi", 12, opdi(0x80)), ("cnc_opdi", 14, opdi(2, 1)),
+    ("cnc_opdi", 13, opdi(9, 5)), ("cnc_opdi", 14, opdi(1, -1)), ("cnc_refpoint", 0, 0, 1), ("cnc_refpoint", 1, 2, 1),
+    ("cnc_refpoint", 1, 0, 5), ("cnc_abspoint", 7, 0, 1, 600, FAR), ("cnc_abspoint", 1, -1, 1, 600, FAR),
+    ("cnc_abspoint", 1, 0, 2, 600, FAR), ("cnc_abspoint", 1, 0, 1, 0, FAR), ("cnc_incpoint", 2, 0, 1, -1, FAR),
+    ("cnc_incpoint", 1, 0, 0, 600, FAR), ("cnc_incpoint", 1, 0, 3, 600, FAR), ("cnc_dwell", 1, 0, 1, positions((1, 0))),
+    ("cnc_dwell", 1, 0, 1, positions((1, 100_000_000))), ("cnc_coordre", 1, 0, 1, positions((1, -100_000_000))),
+    ("cnc_rdalminfo", 2, -1, 6), ("cnc_rdalminfo", 0, 0x7A80, 6), ("cnc_rdalminfo", 0, -1, 5),
+    ("cnc_rdalminfo", 1, -1, 6),
+    ("cnc_modal", 21, 0), ("cnc_modal", 99, 0), ("cnc_modal", 206, 0), ("cnc_modal", 0, 3), ("cnc_modal", 0, -1),
+    ("cnc_diagnoss", 6, 0, 5), ("cnc_diagnoss", 300, 7, 8), ("cnc_diagnoss", 300, 1, 7), ("cnc_diagnosr", 5, 0, 4, 99),
+    ("cnc_diagnosr", 0, -2, 4, 99), ("cnc_diagnosr", 0, 0, 4, 4), ("cnc_getfigure", 3), ("cnc_getfigure", -1),
+    ("cnc_rdopmsg", 1, 262), ("cnc_rdopmsg", 0, 261), ("cnc_wropnlsgnl", panel(0x21, mode=6, feed_ovrd=4)),
+    ("cnc_wropnlsgnl", panel(0x30, jog_ovrd=25, feed_ovrd=4)),
+    ("cnc_wropnlsgnl", panel(0x1008, rpd_ovrd=2, feed_hold=2)),
+    ("pmc_rdpmcrng", 10, 0, 0, 0, 9), ("pmc_rdpmcrng", 9, 3, 0, 0, 9), ("pmc_rdpmcrng", 9, 0, 1860, 1860, 9),
+    ("pmc_rdpmcrng", 9, 2, 0, 3, 11), ("pmc_wrpmcrng", 9, bytes((1, 0, 0, 0, 5, 0, 5, 0, 7))),
+    ("pmc_wrpmcrng", 9, bytes((3, 0, 0, 0, 5, 0, 5, 0, 7))), ("pmc_wrpmcrng", 9, bytes((7, 0, 0, 0, 17, 0, 17, 0, 7))),
+    ("pmc_wrpmcrng", 9, bytes((5, 0, 0, 0, 0x28, 0x23, 0x28, 0x23, 7))),
+    ("pmc_wrpmcrng", 8, bytes((9, 0, 0, 0, 5, 0, 5, 0, 7))),
+    ("pmc_rdpmcinfo", 10), ("pmc_rdpmcinfo", -2),
+)  # fmt: skip
+"""Calls that are refused whatever the state is; some would be refused by it too."""
+ENDS = {
+    "G": (0, 255),
+    "Y": (0, 1063),
+    "A": (0, 24),
+    "R": (0, 999),
+    "T": (0, 79),
+    "K": (0, 16),
+    "C": (0, 79),
+    "D": (0, 1859),
+}
+"""Addresses that are written in every state."""
 
 
 def begun(b: Bench, name: str, **machine: Any) -> None:
@@ -146,16 +186,35 @@ def reads_in_states(b: Bench) -> None:
         b.control.operator_message(2001, "COOLANT")
         b.control.raise_alarm(1004 + len(b.lines) % 3, "AIR", axis=2) if name == "a program runs" else None
         b.look()
-        for each in READS:
+        for each in (*READS, *REFUSED):
             function, *arguments = each
             found = getattr(b.library, function)(b.handle, *arguments)
             code, *values = found if isinstance(found, tuple) else (found,)
             text = f"{function}({', '.join(map(plain, arguments))}) {fwlib.EW(code).name} "
             text += " | ".join(map(plain, values)) if code == 0 else ""
-            if before.get(each) != text:
+            if before.get(text.partition(")")[0]) != text:
                 b.lines.append(text.rstrip())
-                before[each] = text
+                before[text.partition(")")[0]] = text
         b.histories()
+
+
+def areas_in_states(b: Bench) -> None:
+    """Bytes at both ends of the areas of the PMC in each state, read again as words; what outlasts the power."""
+    b.letters = LETTERS
+    for k, name in enumerate(STATES):
+        begun(b, name)
+        for letter, (first, last) in ENDS.items():
+            data = bytes(((0x81 + 7 * k + ord(letter)) & 0xFF, (3 * k + 1) & 0xFF))
+            low = first + k % 3
+            for at, written in ((low, data), (last - k % 2, data[: 1 + k % 2])):
+                head = (LETTERS.index(letter), 0, at, at + len(written) - 1)
+                block = b"".join(each.to_bytes(2, "little") for each in head) + written
+                assert b.library.pmc_wrpmcrng(b.handle, len(block), block) == 0
+            b.ask("pmc_rdpmcrng", LETTERS.index(letter), 1, low, low + 1, 10)
+        b.control.advance(2)
+        b.look()
+        if k % 4 == 0:
+            b.act(("reset", "power_cycle")[k // 4 % 2])
 
 
 SIGNALS = (
@@ -231,4 +290,4 @@ def commands_in_states(b: Bench) -> None:
         b.act("reset")
 
 
-SCENES = (reads_in_states, signals_in_states, panel_in_states, commands_in_states)
+SCENES = (reads_in_states, areas_in_states, signals_in_states, panel_in_states, commands_in_states)

@@ -15,6 +15,7 @@ import pytest
 from polycnc.conformance import State, load_conformance
 from support import (
     fanuc_scenes_b_calls,
+    fanuc_scenes_b_elsewhere,
     fanuc_scenes_b_history,
     fanuc_scenes_b_matrix,
     fanuc_scenes_b_motion,
@@ -27,7 +28,7 @@ from support.fanuc_scenes_b import Bench
 RECORDED = Path(__file__).parents[1] / "golden" / "fanuc_b"
 PARTS = (
     fanuc_scenes_b_panel, fanuc_scenes_b_motion, fanuc_scenes_b_state, fanuc_scenes_b_history, fanuc_scenes_b_calls,
-    fanuc_scenes_b_matrix,
+    fanuc_scenes_b_matrix, fanuc_scenes_b_elsewhere,
 )  # fmt: skip
 SCENES: dict[str, Callable[[Bench], None]] = {act.__name__: act for part in PARTS for act in part.SCENES}
 
@@ -67,8 +68,14 @@ SHOWS = {
         r"|concept\.history.*"
     ),
     "reads_in_states": r"cnc_modal\.type\.(0_20|100_126|200_205)|pmc_rdpmcinfo|ODBPMCINF.*",
+    "areas_in_states": r"IODBPMC\.(type_[ad]|datano_[se])",
     "signals_in_states": r"ODBST|ODBST\.(aut|run|motion|mstb|emergency|alarm)",
     "panel_in_states": r"ODBST|ODBST\.(aut|run|motion|mstb|emergency|alarm)",
+    "figures_elsewhere": (
+        r"getfigure\.(valid.*|dec\.(\w+\.IS-[ABC]\.mm|\w+\.IS-[BC]\.inch|axis\.IS-[ABC]\.deg))"
+        r"|concept\.increment_system|param\.(0000_2|100.*)"
+    ),
+    "configurations_elsewhere": r"ODBSYS\.(mt_type|cnc_type).*|ODBSYSC\.(sv[135]min|sicmin|posmin|hdiio).*",
     "commands_in_states": r"param\.80.*|ODBEXEC\.state.*|concept\.direct_command",
     "faults": (
         r"cnc_(opdi|exebufstat|finstate|setfin|refpoint|abspoint|incpoint|dwell|coordre)\.err\.EW_BUSY"
