@@ -7,6 +7,7 @@ from typing import Any
 
 from polycnc.controllers.fanuc.data._configuration import Configuration
 from support.fanuc_scenes_b import Bench
+from support.fanuc_scenes_b_matrix import begun
 
 BLOCKS = """N1 G20 G91 G94 G17 F1.5
 N2 G1 X.1 Y-.02 S77 M4
@@ -38,6 +39,7 @@ def modal_elsewhere(b: Bench) -> None:
     b.wide, b.letters = True, ""
     for machine in MACHINES:
         b.fresh(**machine)
+        b.parameters(3030, (8, 1, 5)[MACHINES.index(machine)])
         b.control.tool_offsets.set_all({1: 120, 2: -340})
         b.control.programs.register(132, "O0132\nN55 G90 X.1 F300\nM99\n")
         b.control.control.set_switches(single_block=True, block_delete=frozenset({1}))
@@ -91,17 +93,22 @@ def figures_elsewhere(b: Bench) -> None:
             b.ask("cnc_getfigure", kind)
 
 
+def _with(configuration: Configuration, modules: list[str], there: bool) -> Configuration:
+    changes: dict[str, Any] = dict.fromkeys(modules, there)
+    return replace(configuration, **changes)
+
+
 def configurations_elsewhere(b: Bench) -> None:
     """Modules that are all there, and none; of few and of all axes, of both models, and while something happens."""
     modules = [each.name for each in fields(Configuration) if each.type == "bool"]
     for machine in ({"axes": 6}, {"axes": 1}, {"axes": 3, "increment": "IS-C"}, {"model": "D", "axes": 2}):
         b.fresh(**machine)
         for there in (False, True):
-            made = replace(Configuration(), **dict.fromkeys(modules, there))
+            made = _with(Configuration(), modules, there)
             b.control.configuration = made
             b.ask("cnc_sysconfig")
             for name in modules:
-                b.control.configuration = replace(made, **{name: not there})
+                b.control.configuration = _with(made, [name], not there)
                 b.ask("cnc_sysconfig")
         b.act("emergency_stop")
         b.ask("cnc_sysinfo")
@@ -110,4 +117,68 @@ def configurations_elsewhere(b: Bench) -> None:
         b.ask("cnc_sysconfig")
 
 
-SCENES = (modal_elsewhere, figures_elsewhere, configurations_elsewhere)
+def diagnosis_elsewhere(b: Bench) -> None:
+    """Servo alarms of each axis alone and beside others, far positions, a spindle to minus, of other machines."""
+    b.letters = ""
+    b.fresh(axes=6, rotary=(6,))
+    for number in (411, 417):
+        for axis in range(1, 7):
+            b.act("raise_alarm", number, axis=axis)
+            if axis % 3 == 0:
+                b.act("reset")
+    for axis in (0, 1, 2, 5, 6):
+        b.ask("cnc_diagnoss", 301, axis, 28)
+    b.program(151, "G0 X-990. Y880. Z-1234. A-900.\nM4 S650\nG1 U-1.5 V2. F300\nM5\nM30")
+    for cycles in (5000, 9000, 9000, 20000):
+        b.run(cycles)
+        for number in (201, 300, 301, 411):
+            b.ask("cnc_diagnoss", number, -1, 28)
+    for machine in (
+        {"model": "D", "inch_output": True},
+        {"axes": 4, "increment": "IS-C", "inch_input": True},
+    ):
+        b.fresh(**machine)
+        b.program(152, "G20 G91 G0 X-1.5 Y2.25\nG1 X-.1 F2.\nM30")
+        for cycles in (300, 3000, 3000):
+            b.run(cycles)
+            for axis in (-1, 1, 2):
+                b.ask("cnc_diagnoss", 301, axis, 28)
+                b.ask("cnc_diagnosr", 200, axis, 301, 200)
+
+
+def editing_elsewhere(b: Bench) -> None:
+    """Editing, sending, receiving and comparing beside an alarm, an emergency stop, a program, other modes."""
+    for name in (
+        "an alarm",
+        "emergency stop",
+        "a program runs",
+        "a program is held",
+        "jogging",
+        "EDIT",
+        "the battery is low",
+    ):
+        begun(b, name)
+        b.control.programs.register(8, "O0008\nM30\n")
+        edit = b.control.control.edit("O0008", background=True)
+        b.look()
+        b.act("reset")
+        edit.close()
+        b.look()
+        for function, arguments in (
+            ("cnc_upstart", (8,)), ("cnc_upload", (9,)), ("cnc_upend", ()), ("cnc_dwnstart", ()),
+            ("cnc_download", (b"\nO0009\nM30\n", 11)), ("cnc_download", (b"%", 1)), ("cnc_dwnend", ()),
+        ):  # fmt: skip
+            b.do(function, *arguments)
+        b.act("start_compare")
+        b.act("raise_alarm", 3)
+        b.act("feed_hold")
+        b.do("cnc_dwnend")
+
+
+SCENES = (
+    diagnosis_elsewhere,
+    editing_elsewhere,
+    modal_elsewhere,
+    figures_elsewhere,
+    configurations_elsewhere,
+)

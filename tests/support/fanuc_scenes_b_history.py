@@ -177,6 +177,11 @@ def history_records(b: Bench) -> None:
         b.control.raise_alarm(7, "EARLY", axis=2)
         b.control.advance(1200)
     b.histories()
+    for key, number in ((9, 430), (200, 1700)):
+        b.control.raise_alarm(number, "BEFORE A KEY")
+        b.control.history.press_key(key)
+        b.control.reset()
+    b.histories()
     b.title("stopped: nothing is noted, and nothing of it later; only then histories can be read")
     counts(b)
     b.ask("cnc_stopophis")

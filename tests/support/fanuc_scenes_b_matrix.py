@@ -9,7 +9,7 @@ from collections.abc import Callable
 from typing import Any
 
 from polycnc.cnc import Answer, Function
-from polycnc.controllers.fanuc import fwlib
+from polycnc.controllers.fanuc import PowerMateMode, fwlib
 from support.fanuc_scenes_b import LETTERS, Bench, opdi, panel, plain, positions
 from support.fanuc_scenes_b_motion import command, signal
 
@@ -88,6 +88,11 @@ def _locked(b: Bench) -> None:
     _running(b)
 
 
+def _dry_run(b: Bench) -> None:
+    b.control.signals.give_bits(46, 0x80, 0x80)
+    _running(b)
+
+
 def _alarm(b: Bench) -> None:
     _running(b)
     b.control.raise_alarm(417, "DETECT", axis=3)
@@ -108,8 +113,10 @@ STATES: dict[str, Callable[[Bench], None]] = {
     "direct commands": _direct, "direct commands are held": _direct_held, "an alarm": _alarm,
     "emergency stop": lambda b: b.control.emergency_stop(), "reset is on": _given(8, 0x80, 0x80),
     "a servo is off": _given(126, 0xF, 5), "hold is on": _given(8, 0x20, 0), "machine lock": _locked,
-    "the battery is low": _battery, "a program comes in": _receiving,
+    "the battery is low": _battery, "dry run": _dry_run, "a program comes in": _receiving,
 }  # fmt: skip
+BUSY = ("a program runs", "MDI runs", "jogging", "direct commands", "direct commands are held", "dry run")
+"""States that most signals end."""
 READS: tuple[tuple[Any, ...], ...] = (
     ("cnc_sysinfo",), ("cnc_sysconfig",), ("cnc_getfigure", 0), ("cnc_getfigure", 1), ("cnc_getfigure", 2),
     ("cnc_rdophisno",), ("cnc_rdophistry", 1, 2, 22), ("cnc_rdalmhisno",), ("cnc_rdalmhistry", 1, 1, 54),
@@ -180,7 +187,7 @@ def begun(b: Bench, name: str, **machine: Any) -> None:
 
 def reads_in_states(b: Bench) -> None:
     """What each function that reads answers in each state; what is as in the state before is not written again."""
-    before: dict[tuple[Any, ...], str] = {}
+    before: dict[str, str] = {}
     for name in STATES:
         begun(b, name)
         b.control.operator_message(2001, "COOLANT")
@@ -218,20 +225,48 @@ def areas_in_states(b: Bench) -> None:
 
 
 SIGNALS = (
-    (10, 30, 120), (13, 51, 204), (12, 5, 10), (7, 1, 0), (15, 1, 0), (4, 1, 0), (14, 9, 0), (9, 4, 1), (2, 0, 1),
+    (10, 30, 120), (13, 51, 204), (12, 0x2A, 0x15), (7, 1, 0), (15, 1, 0), (4, 1, 0), (14, 9, 0), (9, 4, 1), (2, 0, 1),
     (8, 1, 0), (3, 1, 0), (1, 0, 1),
 )  # fmt: skip
 
 
 def signals_in_states(b: Bench) -> None:
-    """Each operation signal given and taken back in each state; another one comes first in each."""
+    """Each operation signal given and taken back in each state; busy ones are gone back to after each."""
     for k, name in enumerate(STATES):
         begun(b, name)
+        here = b.control.snapshot() if name in BUSY else None
+        kept, memory = dict(b.kept), dict(b.memory)
         for j in range(len(SIGNALS)):
             number, on, off = SIGNALS[(5 * k + j) % len(SIGNALS)]
+            if here is not None:
+                b.control.restore(here)
+                b.kept, b.memory = dict(kept), dict(memory)
             axis = (k + j) % (AXES + 1) if number in (13, 14) else 0
             signal(b, number, on, axis, cycles=12)
             signal(b, number, off, axis, cycles=12)
+    b.title("from each mode to each")
+    b.fresh(axes=2)
+    for mode in PowerMateMode:
+        for value in (0, 1, 2, 3, 4, 5, 7):
+            b.control.select_mode(mode)
+            b.look()
+            signal(b, 9, value, cycles=0)
+    b.title("external reset beside an alarm in an emergency stop")
+    b.act("emergency_stop")
+    b.act("raise_alarm", 5, axis=2)
+    signal(b, 3, 1)
+    signal(b, 3, 0)
+    b.title("machine lock in each mode, at rest, before axes are moved by hand")
+    for mode in ("JOG", "INC", "REF", "T-JOG"):
+        b.fresh(axes=3)
+        b.act("select_mode", "JOG")
+        b.put("G", 102, 2, cycles=60)
+        b.put("G", 102, 0, cycles=60)
+        b.act("select_mode", mode)
+        for value in (1, 0):
+            b.do("cnc_wropnlsgnl", panel(1 << 9, machn_lock=value))
+            b.put("G", 100, 2, cycles=30)
+            b.put("G", 100, 0, cycles=60)
 
 
 VALUES = (

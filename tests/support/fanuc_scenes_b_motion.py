@@ -191,6 +191,21 @@ def direct_commands(b: Bench) -> None:
     command(b, "refpoint", 2, 0, 2)
     for name in ("dwell", "coordre"):
         command(b, name, 2, 0, 1, positions((2, 5)))
+    b.title("8010 of one axis alone is 0, and of all but one")
+    ready(b, axes=6)
+    for axis in range(1, 7):
+        for before, value in ((0, 1), (2, 0)):
+            for each in range(1, 7):
+                b.control.parameters.set(8010, value if each == axis else before, each)
+            for each in (axis, axis % 6 + 1):
+                command(b, "refpoint", 1, 0, each)
+                command(b, "incpoint", 2, 0, 1, 600, positions((each, 1)))
+                command(b, "abspoint", 3, 0, 1, 600, positions((each, 2)))
+                command(b, "dwell", 4, 0, 1, positions((each, 1)))
+                command(b, "coordre", 5, 0, 1, positions((each, 3)))
+                command(b, "dwell", 6, 0, 2, positions((each, 1), (each % 6 + 1, 1)))
+                b.control.advance(20)
+    b.look()
     b.title("axes that this machine does not have")
     ready(b, axes=3)
     for axis in (3, 4, 6):
@@ -219,6 +234,11 @@ def direct_commands(b: Bench) -> None:
     for _ in range(9):
         b.run(40)
     b.run(2000)
+    for longest in range(6):
+        command(b, "dwell", 1, 1, 6, positions(*((k + 1, 30 if k == longest else k + 1) for k in range(6))))
+        b.run(20)
+        b.run(25)
+        b.library.cnc_setfin(b.handle, fwlib.ODBFIN(cdata=[1, 0, 0, 0, 0, 0, 0, 0]))
     b.title("flags: each alone, other bits of its byte, all but one")
     for path in range(1, 7):
         for flag in (0, 1):

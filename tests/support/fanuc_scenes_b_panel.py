@@ -90,6 +90,10 @@ def panel_general(b: Bench) -> None:
         (b"", b"X", b"12345678", b"123456789", b"A B  C", b"\xb1\xb2\xff", b"a\0b", b" lead")
     ):
         b.do("cnc_wropnlgsname", fwlib.IODBRDNA(type=0xFF, **{NAMES[k]: text}))
+    for first in range(0x20, 0x100, 64):
+        every = bytes(range(first, min(first + 64, 0x100))).ljust(64)
+        named = {name: every[8 * k : 8 * k + 8] for k, name in enumerate(NAMES)}
+        b.do("cnc_wropnlgsname", fwlib.IODBRDNA(type=0xFF, **named))
     b.do("cnc_wropnlgsname", fwlib.IODBRDNA(type=0x100, sgnl1_name=b"NOTHING"))
     b.do("cnc_wropnlgnrl", fwlib.IODBGNRL(type=0xFF, sgnal=0xA6))
     b.do("cnc_wropnlgsname", fwlib.IODBRDNA(type=0x81, sgnl1_name=b"COOLANT", sgnl8_name=b"CHIPS ON"))
@@ -247,6 +251,13 @@ def pmc_areas(b: Bench) -> None:
         read(b, kind, data_type, first, last)
         data = bytes((37 * k + 11) % 251 for k in range(first, last + 1))
         given(b, kind, data_type, first, last, data)
+        given(b, kind, data_type, first, last, bytes(0xFF - each for each in data))
+    for address in (*range(128), *range(1000, 1064)):
+        b.control.pmc.set_input(address, 0x97 * (address + 1) & 0xFF)
+    b.look()
+    for address in (*range(128), *range(1000, 1064)):
+        b.control.pmc.write("Y", address, bytes([0x59 * (address + 3) & 0xFF]))
+    b.look()
     b.title("what outlasts a reset, and switching off")
     b.act("reset")
     b.act("power_cycle")

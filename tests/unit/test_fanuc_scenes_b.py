@@ -69,7 +69,9 @@ SHOWS = {
     ),
     "reads_in_states": r"cnc_modal\.type\.(0_20|100_126|200_205)|pmc_rdpmcinfo|ODBPMCINF.*",
     "areas_in_states": r"IODBPMC\.(type_[ad]|datano_[se])",
-    "signals_in_states": r"ODBST|ODBST\.(aut|run|motion|mstb|emergency|alarm)",
+    "over_the_network": r"ODBST|ODBALM|ODBSYS|cnc_(statinfo|alarm|sysinfo)|IODBPMC.*",
+    "diagnosis_elsewhere": r"ODBDGN.*",
+    "signals_in_states": r"cnc_opdi(\.(number|sig).*)?|ODBOPDI.*|ODBST|ODBST\.(aut|run|motion|mstb|emergency|alarm)",
     "panel_in_states": r"ODBST|ODBST\.(aut|run|motion|mstb|emergency|alarm)",
     "figures_elsewhere": (
         r"getfigure\.(valid.*|dec\.(\w+\.IS-[ABC]\.mm|\w+\.IS-[BC]\.inch|axis\.IS-[ABC]\.deg))"

@@ -85,6 +85,11 @@ class AxisMotion:
         return any(path.blocks for path in self.state.paths)
 
     @property
+    def is_held(self) -> bool:
+        """Whether blocks wait until a hold is taken back."""
+        return self.state.held and self.busy
+
+    @property
     def moving(self) -> frozenset[str]:
         """The names of the axes that move by a command."""
         moves = (path.blocks[0][1] for path in self.state.paths if path.begun)

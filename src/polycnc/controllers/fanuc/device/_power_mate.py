@@ -173,12 +173,16 @@ class PowerMate:
     def cycle_start(self, step: Step = Step.RUN, *, line: int | None = None) -> None:
         """Start the program of MEM, MDI or RMT (`remote`) at a line or the cursor, or go on with an interrupted one.
 
+        While direct commands are held it lets these go on, and nothing else.
+
         Raises:
             ControlError: As `cnc.Control.cycle_start`; feed hold or reset is given; nothing sends a program in RMT.
         """
         self.power.take_over()
         _check_signals(self.state.signals)
-        self.axis_motion.go_on()
+        if self.axis_motion.is_held:
+            self.axis_motion.go_on()
+            return
         channel = self.control.channels[0]
         self.remote.before_start(name_of(self.programs.selected) if self.programs.selected else None)
         if not channel.interrupted:
