@@ -85,11 +85,6 @@ class AxisMotion:
         return any(path.blocks for path in self.state.paths)
 
     @property
-    def is_held(self) -> bool:
-        """Whether blocks wait until a hold is taken back."""
-        return self.state.held and self.busy
-
-    @property
     def moving(self) -> frozenset[str]:
         """The names of the axes that move by a command."""
         moves = (path.blocks[0][1] for path in self.state.paths if path.begun)
@@ -127,6 +122,12 @@ class AxisMotion:
     def go_on(self) -> None:
         """Let commands that are held go on."""
         self.state.held = False
+
+    def has_gone_on(self) -> bool:
+        """Let commands that are held go on, and tell whether there were any."""
+        waited = self.state.held and self.busy
+        self.go_on()
+        return waited
 
     # ------------------------------------------------------------------ time
 
