@@ -85,6 +85,23 @@ def signals_of_operation(b: Bench) -> None:
     b.do("cnc_opdi", 15, long)
     long.u.ldata = 0x7FFFFF00
     b.do("cnc_opdi", 15, long)
+    for number, value in (
+        (1, 1),
+        (2, 1),
+        (3, 0),
+        (4, 9),
+        (7, 1),
+        (8, 0),
+        (9, 4),
+        (10, 88),
+        (12, 0x15),
+        (13, 66),
+        (14, 0),
+    ):
+        for others in (0x3B9D5C00, -0x3B9D5C00, 0x7F00, 0x01000000):
+            long.u.ldata = others | value
+            b.ask("cnc_opdi", number, long)
+        b.look()
     b.title("what stays after a reset, and after switching off")
     for number, value in ((4, 5), (10, 37), (12, 9), (13, 77), (15, 1), (7, 1)):
         signal(b, number, value)
@@ -433,8 +450,14 @@ def direct_units(b: Bench) -> None:
         {"rotary": (2,)},
         {"increment": "IS-A", "inch_output": True, "rotary": (3,)},
         {"inch_input": True, "inch_output": True},
+        {"inch_output": True, "axes": 6, "rotary": (2, 5)},
     ):
-        ready(b, axes=3, **machine)
+        ready(b, **({"axes": 3} | machine))
+        if b.control.axes > 3:
+            command(b, "incpoint", 2, 0, 3, 1200, positions((4, 333), (5, -444), (6, -555)))
+            command(b, "coordre", 3, 0, 2, positions((4, 1000), (5, -70)))
+            command(b, "abspoint", 6, 0, 3, 1200, positions((6, 71), (5, 72), (4, -73)))
+            b.run(3000)
         command(b, "incpoint", 1, 0, 3, 900, positions((1, 123), (2, -456), (3, 78)))
         b.run(12)
         b.run(3000)

@@ -81,9 +81,9 @@ def panel_general(b: Bench) -> None:
     for bit in range(16):
         b.ask("cnc_rdopnlgsname", short(1 << bit))
         b.ask("cnc_rdopnlgsname", short(WHOLE & ~(1 << bit)))
-    for bit in range(8):
+    for bit in range(16):
         new = {name: f"NEW {bit} {k}".encode() for k, name in enumerate(NAMES)}
-        b.do("cnc_wropnlgsname", fwlib.IODBRDNA(datano=3, type=1 << bit, **new))
+        b.do("cnc_wropnlgsname", fwlib.IODBRDNA(datano=3, type=short(1 << bit), **new))
         b.do("cnc_wropnlgsname", fwlib.IODBRDNA(type=short(WHOLE & ~(1 << bit)), **new))
     b.title("lengths and characters of a name")
     for k, text in enumerate(
@@ -161,6 +161,15 @@ def panel_at_work(b: Bench) -> None:
     for value in range(25):
         b.control.panel.set({"jog_ovrd": value})
         b.run(150)
+    for mode in ("T-JOG", "INC"):
+        b.act("select_mode", mode)
+        for address, bits in ((100, 0), (102, 0), (100, 2), (102, 4)):
+            b.control.pmc.write("G", address, bytes([bits]))
+        for value in range(24, -1, -1):
+            b.control.panel.set({"jog_ovrd": value})
+            b.control.advance(40)
+            b.look()
+    b.act("select_mode", "JOG")
     b.title("modes while a program runs, and when axes are jogged")
     for mode in (1, 5, 3, 0, 2, 4):
         b.do("cnc_wropnlsgnl", panel(1, mode=mode))

@@ -67,7 +67,10 @@ SHOWS = {
         r"cnc_(stop|start|clear|rd)ophis.*|cnc_rdalmhis.*|ODBHIS(?!\.(alm_grp|sig)).*|ODBAHIS.*"
         r"|concept\.history.*"
     ),
-    "reads_in_states": r"cnc_modal\.type\.(0_20|100_126|200_205)|pmc_rdpmcinfo|ODBPMCINF.*",
+    "reads_in_states": (
+        r"ODBPOS(\.idata)?|(cnc_getfigure\.data_|cnc_rdalminfo\.|pmc\.(adr|data)_)type.*|nmod.*"
+        r"|cnc_modal\.type\.(0_20|100_126|200_205)|pmc_rdpmcinfo|ODBPMCINF.*"
+    ),
     "areas_in_states": r"IODBPMC\.(type_[ad]|datano_[se])",
     "over_the_network": r"ODBST|ODBALM|ODBSYS|cnc_(statinfo|alarm|sysinfo)|IODBPMC.*",
     "diagnosis_elsewhere": r"ODBDGN.*",
@@ -88,6 +91,16 @@ CONFORMANCE = load_conformance()
 STATED = [row.id for row in CONFORMANCE.rows("fanuc") if CONFORMANCE.state(row.id) is State.TESTED]
 # Alarms, states and addresses that no scene brings about.
 OF_ALL = r"ODBST(\.(aut|run|motion|emergency|alarm)(\.\d+)?)?"
+# What holds in every state and mode that these go through.
+IN_ALL = r"common\.allmode|example\.cnc_rdopmsg|OPMSG\.datano\.-1|cnc_rdopmsg(\.type\.0)?"
+MANY_STATES = (
+    "states",
+    "alarms",
+    "reads_in_states",
+    "commands_in_states",
+    "signals_in_states",
+    "over_the_network",
+)
 AT_WORK = (
     "panel_at_work",
     "signals_at_work",
@@ -101,7 +114,8 @@ ELSEWHERE = re.compile(r"fanuc\.(modal\.G\.20\..*|.*EW_OK)")
 
 def shown(name: str) -> list[str]:
     """Return the rows that a scene shows."""
-    wanted = re.compile(rf"fanuc\.({SHOWS.get(name, '')}{'|' + OF_ALL if name in AT_WORK else ''})")
+    more = [OF_ALL] * (name in AT_WORK) + [IN_ALL] * (name in MANY_STATES)
+    wanted = re.compile(rf"fanuc\.({'|'.join([SHOWS.get(name, ''), *more])})")
     file = RECORDED / f"{name}.txt"
     seen = {f"fanuc.{row}" for row in rows_shown(file.read_text(encoding="utf-8") if file.exists() else "")}
     return [row for row in STATED if (row in seen or wanted.fullmatch(row)) and not ELSEWHERE.fullmatch(row)]
