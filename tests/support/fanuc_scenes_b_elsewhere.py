@@ -110,6 +110,21 @@ def configurations_elsewhere(b: Bench) -> None:
             for name in modules:
                 b.control.configuration = _with(made, [name], not there)
                 b.ask("cnc_sysconfig")
+        b.control.configuration = Configuration(
+            "2 MB",
+            "2.5 MB",
+            "768 KB",
+            "PMP module",
+            "M-NET",
+            False,
+            True,
+            False,
+            "90A1B2C3",
+            "4077AB",
+            "LADDER",
+            "MACRO1",
+        )
+        b.ask("cnc_sysconfig")
         b.act("emergency_stop")
         b.ask("cnc_sysinfo")
         b.act("power_cycle")

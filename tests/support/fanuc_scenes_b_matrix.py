@@ -273,6 +273,28 @@ def signals_in_states(b: Bench) -> None:
             b.control.select_mode(before)
             b.look()
             signal(b, 9, value, cycles=0)
+    b.title(
+        "rapid beside keys, feed overrides of a reference return, a start in MDI, by the edges of its signal"
+    )
+    b.fresh(axes=3)
+    for mode in ("JOG", "T-JOG", "INC"):
+        b.act("select_mode", mode)
+        for bits in (0x30, 0xB0):
+            b.control.pmc.write("G", 19, bytes([bits]))
+            b.put("G", 100, 5, cycles=60)
+            b.put("G", 100, 0, cycles=900)
+    begun(b, "at rest")
+    command(b, "incpoint", 1, 0, 2, 3000, positions((1, 400000), (4, -90000)))
+    for value in range(21):
+        b.control.panel.set({"feed_ovrd": value})
+        b.control.advance(60)
+        b.look()
+    b.act("reset")
+    b.control.mdi.clear()
+    b.control.select_mode("MDI")
+    b.control.mdi.put(b"\nO1\nG91 G1 X9. Y-4. F1200\nM30\n%")
+    for value in (1, 0):
+        signal(b, 8, value)
     b.title("external reset beside an alarm in an emergency stop")
     b.act("emergency_stop")
     b.act("raise_alarm", 5, axis=2)

@@ -256,6 +256,11 @@ def pmc_areas(b: Bench) -> None:
         (5, 9000, 9117, 1),
         (7, 0, 19, 2),
         (7, 16, 17, 0),
+        (7, 0, 15, 2),
+        (8, 0, 79, 1),
+        (6, 0, 79, 2),
+        (2, 0, 127, 1),
+        (4, 0, 23, 2),
     ):
         read(b, kind, data_type, first, last)
         data = bytes((37 * k + 11) % 251 for k in range(first, last + 1))
