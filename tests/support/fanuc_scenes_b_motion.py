@@ -98,7 +98,7 @@ def signals_of_operation(b: Bench) -> None:
         (13, 66),
         (14, 0),
     ):
-        for others in (0x3B9D5C00, -0x3B9D5C00, 0x7F00, 0x01000000):
+        for others in (0x01000000, -0x3B9D5C00, 0x7F00, 0x3B9D5C00):
             long.u.ldata = others | value
             b.ask("cnc_opdi", number, long)
         b.look()

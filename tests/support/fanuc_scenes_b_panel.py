@@ -161,8 +161,8 @@ def panel_at_work(b: Bench) -> None:
     for value in range(25):
         b.control.panel.set({"jog_ovrd": value})
         b.run(150)
-    for mode in ("T-JOG", "INC"):
-        b.act("select_mode", mode)
+    for manual in ("T-JOG", "INC"):
+        b.act("select_mode", manual)
         for address, bits in ((100, 0), (102, 0), (100, 2), (102, 4)):
             b.control.pmc.write("G", address, bytes([bits]))
         for value in range(24, -1, -1):
