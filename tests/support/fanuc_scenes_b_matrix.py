@@ -290,7 +290,7 @@ def signals_in_states(b: Bench) -> None:
         b.control.advance(60)
         b.look()
     b.act("reset")
-    b.control.mdi.clear()
+    b.run(300)
     b.control.select_mode("MDI")
     b.control.mdi.put(b"\nO1\nG91 G1 X9. Y-4. F1200\nM30\n%")
     for value in (1, 0):
