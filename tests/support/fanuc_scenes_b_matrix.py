@@ -273,10 +273,9 @@ def signals_in_states(b: Bench) -> None:
             b.control.select_mode(before)
             b.look()
             signal(b, 9, value, cycles=0)
-    b.title(
-        "rapid beside keys, feed overrides of a reference return, a start in MDI, by the edges of its signal"
-    )
-    b.fresh(axes=3)
+    b.title("rapid beside keys, feed overrides of a direct command, the edges of a start in MDI")
+    b.fresh(axes=3, increment="IS-A")
+    b.control.panel.set({"jog_ovrd": 17})
     for mode in ("JOG", "T-JOG", "INC"):
         b.act("select_mode", mode)
         for bits in (0x30, 0xB0):
