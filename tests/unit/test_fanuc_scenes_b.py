@@ -73,7 +73,8 @@ SHOWS = {
     ),
     "areas_in_states": r"IODBPMC\.(type_[ad]|datano_[se])",
     "over_the_network": r"ODBST|ODBALM|ODBSYS|cnc_(statinfo|alarm|sysinfo)|IODBPMC.*",
-    "diagnosis_elsewhere": r"ODBDGN.*",
+    "diagnosis_elsewhere": r"ODBDGN.*|diag\.(axis|kind|type_attr).*",
+    "modal_elsewhere": r"param\.3030",
     "signals_in_states": r"cnc_opdi(\.(number|sig).*)?|ODBOPDI.*|ODBST|ODBST\.(aut|run|motion|mstb|emergency|alarm)",
     "panel_in_states": r"ODBST|ODBST\.(aut|run|motion|mstb|emergency|alarm)",
     "figures_elsewhere": (
