@@ -281,7 +281,7 @@ def signals_in_states(b: Bench) -> None:
         for bits in (0x30, 0xB0):
             b.control.pmc.write("G", 19, bytes([bits]))
             b.put("G", 100, 5, cycles=24)
-            b.put("G", 100, 0, cycles=900)
+            b.put("G", 100, 0, cycles=1200)
     begun(b, "at rest")
     command(b, "incpoint", 1, 0, 2, 3000, positions((1, 400000), (4, -90000)))
     for value in range(21):
