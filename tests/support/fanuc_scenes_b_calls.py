@@ -3,9 +3,13 @@
 from __future__ import annotations
 
 from typing import Any
+from unittest.mock import patch
 
 from polycnc.controllers.fanuc import fwlib
-from support.fanuc_scenes_b import Bench, opdi, panel, plain, positions
+from polycnc.servers.focas import FocasControl, load_profile
+from support.fanuc_scenes_a_wire import Cable
+from support.fanuc_scenes_b import AREAS, LETTERS, Bench, opdi, panel, plain, positions
+from support.fanuc_scenes_b_matrix import STATES, begun
 
 CALLS: tuple[tuple[Any, ...], ...] = (
     ("cnc_stopophis",), ("cnc_startophis",), ("cnc_rdophisno",), ("cnc_rdophistry", 1, 1, 14), ("cnc_rdalmhisno",),
@@ -49,4 +53,52 @@ def faults(b: Bench) -> None:
         b.do(name, *arguments)
 
 
-SCENES = (faults,)
+def over_the_network(b: Bench) -> None:
+    """What can be asked over the network, in every state: as near the control, or written beside it; the whole PMC."""
+    before: dict[str, str] = {}
+
+    def both(name: str, *given: Any) -> None:
+        found = [getattr(b.library, name)(handle, *given) for handle in (remote, b.handle)]
+        texts = []
+        for each in found:
+            code, *values = each if isinstance(each, tuple) else (each,)
+            texts.append(
+                f"{fwlib.EW(code).name} {' | '.join(map(plain, values)) if code == 0 else ''}".rstrip()
+            )
+        call = f"{name}({', '.join(map(plain, given))})"
+        text = f"{call} {texts[0]}" + (f"\n    near: {texts[1]}" if texts[1] != texts[0] else "")
+        if before.get(call) != text:
+            b.lines.append(text)
+        before[call] = text
+
+    for name in STATES:
+        begun(b, name)
+        control = FocasControl(b.control, load_profile("power-mate"))
+        with patch("socket.create_connection", lambda *_, it=control: Cable(it, lambda way, data: None)):
+            _, remote = b.library.cnc_allclibhndl3("control", 8193, 1)
+            for function in ("cnc_sysinfo", "cnc_statinfo", "cnc_alarm"):
+                both(function)
+            for kind, first, last in ((0, 4, 15), (1, 0, 11), (1, 94, 106)):
+                both("pmc_rdpmcrng", kind, 0, first, last, 9 + last - first)
+            if name in ("a program is held", "jogging", "an alarm"):
+                for kind, letter in enumerate(LETTERS):
+                    for low, high in AREAS[letter]:
+                        for data_type, size in ((0, 1), (1, 2), (2, 4)):
+                            for at in (low, high - size + 1, high - size + 2, low - 1):
+                                block = bytes((kind, 0, data_type, 0)) + at.to_bytes(2, "little", signed=True)
+                                block += (at + size - 1).to_bytes(2, "little", signed=True)
+                                if letter != "G" and at in (low, high - size + 1):
+                                    code = b.library.pmc_wrpmcrng(
+                                        remote,
+                                        8 + size,
+                                        block + bytes((0x81 + at + kind & 0xFF, 7, 0, 0x90)[:size]),
+                                    )
+                                    if code:
+                                        b.lines.append(
+                                            f"{letter}{at} {data_type} is not written: {fwlib.EW(code).name}"
+                                        )
+                                both("pmc_rdpmcrng", kind, data_type, at, at + size - 1, 8 + size)
+            b.library.cnc_freelibhndl(remote)
+
+
+SCENES = (faults, over_the_network)

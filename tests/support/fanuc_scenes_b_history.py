@@ -74,7 +74,7 @@ def history_table(b: Bench) -> None:
     for name in (0, 1, 2, 3, 4, 5, -1, 127):
         watch(b, (5, name, 17, 0x5A))
     for name, (low, high) in ENDS.items():
-        for address in (0, low, low + 1, 999, 1000, high, high + 1, -1, 32767):
+        for address in (0, low, low + 1, 300, 555, 777, 999, 1000, high, high + 1, -1, 32767):
             watch(b, (name + 6, name, address, 0xA5))
     for mask in (0, 1, 0x7F, 0x80, 0xFF):
         watch(b, (12, G, 44, mask))
@@ -110,7 +110,7 @@ def history_signals(b: Bench) -> None:
         b.histories()
         watch(b, *((bit + 1, name, 60 + bit, 1 << bit) for bit in range(8)))
         for bit in range(8):
-            for value in (0xFF & ~(1 << bit), 0xFF, 1 << bit):
+            for value in (0xFF & ~(1 << bit), 0xFF, 1 << bit, 0):
                 if letter == "X":
                     b.control.pmc.set_input(60 + bit, value)
                 else:
@@ -176,6 +176,11 @@ def history_records(b: Bench) -> None:
         b.control.power_cycle()
         b.control.raise_alarm(7, "EARLY", axis=2)
         b.control.advance(1200)
+    b.histories()
+    for key, number in ((9, 430), (200, 1700)):
+        b.control.raise_alarm(number, "BEFORE A KEY")
+        b.control.history.press_key(key)
+        b.control.reset()
     b.histories()
     b.title("stopped: nothing is noted, and nothing of it later; only then histories can be read")
     counts(b)

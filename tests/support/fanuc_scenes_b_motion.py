@@ -85,6 +85,23 @@ def signals_of_operation(b: Bench) -> None:
     b.do("cnc_opdi", 15, long)
     long.u.ldata = 0x7FFFFF00
     b.do("cnc_opdi", 15, long)
+    for number, value in (
+        (1, 1),
+        (2, 1),
+        (3, 0),
+        (4, 9),
+        (7, 1),
+        (8, 0),
+        (9, 4),
+        (10, 88),
+        (12, 0x15),
+        (13, 66),
+        (14, 0),
+    ):
+        for others in (0x01000000, -0x3B9D5C00, 0x7F00, 0x3B9D5C00):
+            long.u.ldata = others | value
+            b.ask("cnc_opdi", number, long)
+        b.look()
     b.title("what stays after a reset, and after switching off")
     for number, value in ((4, 5), (10, 37), (12, 9), (13, 77), (15, 1), (7, 1)):
         signal(b, number, value)
@@ -191,6 +208,21 @@ def direct_commands(b: Bench) -> None:
     command(b, "refpoint", 2, 0, 2)
     for name in ("dwell", "coordre"):
         command(b, name, 2, 0, 1, positions((2, 5)))
+    b.title("8010 of one axis alone is 0, and of all but one")
+    ready(b, axes=6)
+    for axis in range(1, 7):
+        for before, value in ((0, 1), (2, 0)):
+            for each in range(1, 7):
+                b.control.parameters.set(8010, value if each == axis else before, each)
+            for each in (axis, axis % 6 + 1):
+                command(b, "refpoint", 1, 0, each)
+                command(b, "incpoint", 2, 0, 1, 600, positions((each, 1)))
+                command(b, "abspoint", 3, 0, 1, 600, positions((each, 2)))
+                command(b, "dwell", 4, 0, 1, positions((each, 1)))
+                command(b, "coordre", 5, 0, 1, positions((each, 3)))
+                command(b, "dwell", 6, 0, 2, positions((each, 1), (each % 6 + 1, 1)))
+                b.control.advance(20)
+    b.look()
     b.title("axes that this machine does not have")
     ready(b, axes=3)
     for axis in (3, 4, 6):
@@ -219,6 +251,11 @@ def direct_commands(b: Bench) -> None:
     for _ in range(9):
         b.run(40)
     b.run(2000)
+    for longest in range(6):
+        command(b, "dwell", 1, 1, 6, positions(*((k + 1, 30 if k == longest else k + 1) for k in range(6))))
+        b.run(20)
+        b.run(25)
+        b.library.cnc_setfin(b.handle, fwlib.ODBFIN(cdata=[1, 0, 0, 0, 0, 0, 0, 0]))
     b.title("flags: each alone, other bits of its byte, all but one")
     for path in range(1, 7):
         for flag in (0, 1):
@@ -413,8 +450,14 @@ def direct_units(b: Bench) -> None:
         {"rotary": (2,)},
         {"increment": "IS-A", "inch_output": True, "rotary": (3,)},
         {"inch_input": True, "inch_output": True},
+        {"inch_output": True, "axes": 6, "rotary": (2, 5)},
     ):
-        ready(b, axes=3, **machine)
+        ready(b, **({"axes": 3} | machine))
+        if b.control.axes > 3:
+            command(b, "incpoint", 2, 0, 3, 1200, positions((4, 333), (5, -444), (6, -555)))
+            command(b, "coordre", 3, 0, 2, positions((4, 1000), (5, -70)))
+            command(b, "abspoint", 6, 0, 3, 1200, positions((6, 71), (5, 72), (4, -73)))
+            b.run(3000)
         command(b, "incpoint", 1, 0, 3, 900, positions((1, 123), (2, -456), (3, 78)))
         b.run(12)
         b.run(3000)

@@ -81,15 +81,19 @@ def panel_general(b: Bench) -> None:
     for bit in range(16):
         b.ask("cnc_rdopnlgsname", short(1 << bit))
         b.ask("cnc_rdopnlgsname", short(WHOLE & ~(1 << bit)))
-    for bit in range(8):
+    for bit in range(16):
         new = {name: f"NEW {bit} {k}".encode() for k, name in enumerate(NAMES)}
-        b.do("cnc_wropnlgsname", fwlib.IODBRDNA(datano=3, type=1 << bit, **new))
+        b.do("cnc_wropnlgsname", fwlib.IODBRDNA(datano=3, type=short(1 << bit), **new))
         b.do("cnc_wropnlgsname", fwlib.IODBRDNA(type=short(WHOLE & ~(1 << bit)), **new))
     b.title("lengths and characters of a name")
     for k, text in enumerate(
         (b"", b"X", b"12345678", b"123456789", b"A B  C", b"\xb1\xb2\xff", b"a\0b", b" lead")
     ):
         b.do("cnc_wropnlgsname", fwlib.IODBRDNA(type=0xFF, **{NAMES[k]: text}))
+    for first in range(0x20, 0x100, 64):
+        every = bytes(range(first, min(first + 64, 0x100))).ljust(64)
+        named = {name: every[8 * k : 8 * k + 8] for k, name in enumerate(NAMES)}
+        b.do("cnc_wropnlgsname", fwlib.IODBRDNA(type=0xFF, **named))
     b.do("cnc_wropnlgsname", fwlib.IODBRDNA(type=0x100, sgnl1_name=b"NOTHING"))
     b.do("cnc_wropnlgnrl", fwlib.IODBGNRL(type=0xFF, sgnal=0xA6))
     b.do("cnc_wropnlgsname", fwlib.IODBRDNA(type=0x81, sgnl1_name=b"COOLANT", sgnl8_name=b"CHIPS ON"))
@@ -157,6 +161,15 @@ def panel_at_work(b: Bench) -> None:
     for value in range(25):
         b.control.panel.set({"jog_ovrd": value})
         b.run(150)
+    for manual in ("T-JOG", "INC"):
+        b.act("select_mode", manual)
+        for address, bits in ((100, 0), (102, 0), (100, 2), (102, 4)):
+            b.control.pmc.write("G", address, bytes([bits]))
+        for value in range(24, -1, -1):
+            b.control.panel.set({"jog_ovrd": value})
+            b.control.advance(40)
+            b.look()
+    b.act("select_mode", "JOG")
     b.title("modes while a program runs, and when axes are jogged")
     for mode in (1, 5, 3, 0, 2, 4):
         b.do("cnc_wropnlsgnl", panel(1, mode=mode))
@@ -243,10 +256,22 @@ def pmc_areas(b: Bench) -> None:
         (5, 9000, 9117, 1),
         (7, 0, 19, 2),
         (7, 16, 17, 0),
+        (7, 0, 15, 2),
+        (8, 0, 79, 1),
+        (6, 0, 79, 2),
+        (2, 0, 127, 1),
+        (4, 0, 23, 2),
     ):
         read(b, kind, data_type, first, last)
         data = bytes((37 * k + 11) % 251 for k in range(first, last + 1))
         given(b, kind, data_type, first, last, data)
+        given(b, kind, data_type, first, last, bytes(0xFF - each for each in data))
+    for address in (*range(128), *range(1000, 1064)):
+        b.control.pmc.set_input(address, 0x97 * (address + 1) & 0xFF)
+    b.look()
+    for address in (*range(128), *range(1000, 1064)):
+        b.control.pmc.write("Y", address, bytes([0x59 * (address + 3) & 0xFF]))
+    b.look()
     b.title("what outlasts a reset, and switching off")
     b.act("reset")
     b.act("power_cycle")

@@ -52,6 +52,7 @@ def figures(b: Bench) -> None:
         *({"increment": each, "inch_input": to, "inch_output": of, "axes": 3, "rotary": (2,)}
           for each in ("IS-A", "IS-B", "IS-C") for to in (False, True) for of in (False, True)),
         {"model": "D"}, {"model": "D", "increment": "IS-C", "axes": 1}, {"axes": 6, "rotary": (6, 1)},
+        {"axes": 6, "rotary": (3, 5), "inch_input": True}, {"axes": 5, "rotary": (2,), "inch_output": True},
     )  # fmt: skip
     for machine in machines:
         b.fresh(**machine)

@@ -15,20 +15,24 @@ import pytest
 from polycnc.conformance import State, load_conformance
 from support import (
     fanuc_scenes_b_calls,
+    fanuc_scenes_b_elsewhere,
     fanuc_scenes_b_history,
+    fanuc_scenes_b_matrix,
     fanuc_scenes_b_motion,
     fanuc_scenes_b_panel,
     fanuc_scenes_b_state,
 )
+from support.fanuc_rows_shown import rows_shown
 from support.fanuc_scenes_b import Bench
 
 RECORDED = Path(__file__).parents[1] / "golden" / "fanuc_b"
 PARTS = (
     fanuc_scenes_b_panel, fanuc_scenes_b_motion, fanuc_scenes_b_state, fanuc_scenes_b_history, fanuc_scenes_b_calls,
+    fanuc_scenes_b_matrix, fanuc_scenes_b_elsewhere,
 )  # fmt: skip
 SCENES: dict[str, Callable[[Bench], None]] = {act.__name__: act for part in PARTS for act in part.SCENES}
 
-# What each scene shows of the manual.
+# What each scene shows of the manual beside what follows from its lines by themselves.
 SHOWS = {
     "panel_values": r"cnc_(rd|wr)opnlsgnl.*|IODBSGNL.*",
     "panel_at_work": r"cnc_wropnlsgnl|IODBSGNL.*|ODBST|ODBST\.(aut|run)\b.*",
@@ -63,6 +67,22 @@ SHOWS = {
         r"cnc_(stop|start|clear|rd)ophis.*|cnc_rdalmhis.*|ODBHIS(?!\.(alm_grp|sig)).*|ODBAHIS.*"
         r"|concept\.history.*"
     ),
+    "reads_in_states": (
+        r"ODBPOS(\.idata)?|(cnc_getfigure\.data_|cnc_rdalminfo\.|pmc\.(adr|data)_)type.*|nmod.*"
+        r"|cnc_modal\.type\.(0_20|100_126|200_205)|pmc_rdpmcinfo|ODBPMCINF.*"
+    ),
+    "areas_in_states": r"IODBPMC\.(type_[ad]|datano_[se])",
+    "over_the_network": r"ODBST|ODBALM|ODBSYS|cnc_(statinfo|alarm|sysinfo)|IODBPMC.*",
+    "diagnosis_elsewhere": r"ODBDGN.*|diag\.(axis|kind|type_attr).*",
+    "modal_elsewhere": r"param\.3030",
+    "signals_in_states": r"cnc_opdi(\.(number|sig).*)?|ODBOPDI.*|ODBST|ODBST\.(aut|run|motion|mstb|emergency|alarm)",
+    "panel_in_states": r"ODBST|ODBST\.(aut|run|motion|mstb|emergency|alarm)",
+    "figures_elsewhere": (
+        r"getfigure\.(valid.*|dec\.(\w+\.IS-[ABC]\.mm|\w+\.IS-[BC]\.inch|axis\.IS-[ABC]\.deg))"
+        r"|concept\.increment_system|param\.(0000_2|100.*)"
+    ),
+    "configurations_elsewhere": r"ODBSYS\.(mt_type|cnc_type).*|ODBSYSC\.(sv[135]min|sicmin|posmin|hdiio).*",
+    "commands_in_states": r"param\.80.*|ODBEXEC\.state.*|concept\.direct_command",
     "faults": (
         r"cnc_(opdi|exebufstat|finstate|setfin|refpoint|abspoint|incpoint|dwell|coordre)\.err\.EW_BUSY"
         r"|common\.handle2"
@@ -72,6 +92,16 @@ CONFORMANCE = load_conformance()
 STATED = [row.id for row in CONFORMANCE.rows("fanuc") if CONFORMANCE.state(row.id) is State.TESTED]
 # Alarms, states and addresses that no scene brings about.
 OF_ALL = r"ODBST(\.(aut|run|motion|emergency|alarm)(\.\d+)?)?"
+# What holds in every state and mode that these go through.
+IN_ALL = r"common\.allmode|example\.cnc_rdopmsg|OPMSG\.datano\.-1|cnc_rdopmsg(\.type\.0)?"
+MANY_STATES = (
+    "states",
+    "alarms",
+    "reads_in_states",
+    "commands_in_states",
+    "signals_in_states",
+    "over_the_network",
+)
 AT_WORK = (
     "panel_at_work",
     "signals_at_work",
@@ -85,8 +115,11 @@ ELSEWHERE = re.compile(r"fanuc\.(modal\.G\.20\..*|.*EW_OK)")
 
 def shown(name: str) -> list[str]:
     """Return the rows that a scene shows."""
-    wanted = re.compile(rf"fanuc\.({SHOWS.get(name, '')}{'|' + OF_ALL if name in AT_WORK else ''})")
-    return [row for row in STATED if wanted.fullmatch(row) and not ELSEWHERE.fullmatch(row)]
+    more = [OF_ALL] * (name in AT_WORK) + [IN_ALL] * (name in MANY_STATES)
+    wanted = re.compile(rf"fanuc\.({'|'.join([SHOWS.get(name, ''), *more])})")
+    file = RECORDED / f"{name}.txt"
+    seen = {f"fanuc.{row}" for row in rows_shown(file.read_text(encoding="utf-8") if file.exists() else "")}
+    return [row for row in STATED if (row in seen or wanted.fullmatch(row)) and not ELSEWHERE.fullmatch(row)]
 
 
 @pytest.mark.parametrize(

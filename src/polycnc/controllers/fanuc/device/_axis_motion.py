@@ -123,6 +123,12 @@ class AxisMotion:
         """Let commands that are held go on."""
         self.state.held = False
 
+    def has_gone_on(self) -> bool:
+        """Let commands that are held go on, and tell whether there were any."""
+        waited = self.state.held and self.busy
+        self.go_on()
+        return waited
+
     # ------------------------------------------------------------------ time
 
     def horizon(self) -> int:

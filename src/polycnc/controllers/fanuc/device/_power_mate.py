@@ -173,14 +173,15 @@ class PowerMate:
         self.state.cursor = line
 
     def cycle_start(self, step: Step = Step.RUN, *, line: int | None = None) -> None:
-        """Start the program of MEM, MDI or RMT (`remote`) at a line or the cursor, or go on with an interrupted one.
+        """Start the program of MEM, MDI or RMT (`remote`) at a line or the cursor; go on with what was stopped.
 
         Raises:
             ControlError: As `cnc.Control.cycle_start`; feed hold or reset is given; nothing sends a program in RMT.
         """
         self.power.take_over()
         _check_signals(self.state.signals)
-        self.axis_motion.go_on()
+        if self.axis_motion.has_gone_on():
+            return
         channel = self.control.channels[0]
         self.remote.before_start(name_of(self.programs.selected) if self.programs.selected else None)
         if not channel.interrupted:
@@ -274,9 +275,8 @@ class PowerMate:
         old = self.control
         old.timers.save()
         self.power_ups += 1
-        self.transfer = None
+        self.transfer, self.state.cursor = None, 0
         self.skip.clear()
-        self.state.cursor = 0
         self.mdi.clear()
         self.state.inch = self.parameters.bit(0, 2)
         self.custom_macros.switched_on()

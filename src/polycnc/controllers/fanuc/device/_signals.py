@@ -87,7 +87,7 @@ class Signals:
         self._panel = panel
         self._note = note
         self.state = device.signals
-        self.clear()
+        self._applied = Overrides()
         self._handlers: dict[int, Callable[[int, int], None]] = {
             4: self._finish,
             7: self._start,
@@ -113,6 +113,7 @@ class Signals:
         state.torque_mode = 0
         self.set_torque_override(0, 255)
         self._applied = Overrides()
+        _offered_f0(self._power, self._parameters)
 
     def restored(self) -> None:
         """Take note that the state and the control behind it have gone back."""
@@ -206,10 +207,8 @@ class Signals:
 
     def apply_overrides(self) -> None:
         """Let the control have the overrides; with a servo off nothing is fed."""
-        control, value = self._power.control, self._parameters.value
-        f0 = min(1.0, value(1421, 1) / value(1420, 1))
-        rapid = RAPID_STEPS.get(self.state.rapid, f0)
-        control.data = replace(control.data, rapid_overrides=(0.0, *RAPID_STEPS.values(), f0))
+        control = self._power.control
+        rapid = RAPID_STEPS.get(self.state.rapid, _offered_f0(self._power, self._parameters))
         feed = self.state.feed / 100.0
         interlock = bool(self.state.given.get(SERVO_OFF))
         control.set_overrides(feed=0.0 if interlock else feed, rapid=0.0 if interlock else rapid)
@@ -359,3 +358,10 @@ class Signals:
             lambda: [each.machine == 0 for each in self._positions.read()],
         )
         return output_byte(address, seen)
+
+
+def _offered_f0(power: Power, parameters: Parameters) -> float:
+    """Give the control the steps of its rapid override, from the power on; return the one of F0."""
+    f0 = min(1.0, parameters.value(1421, 1) / parameters.value(1420, 1))
+    power.control.data = replace(power.control.data, rapid_overrides=(0.0, *RAPID_STEPS.values(), f0))
+    return f0
