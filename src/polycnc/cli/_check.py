@@ -45,6 +45,7 @@ def check_command(
     fixture: options.Fixtures = None,
     target: options.Target = None,
     tolerance: options.Tolerance = None,
+    tools: options.Tools = None,
     as_json: options.AsJson = False,
 ) -> None:
     """Report every error of part programs, each with its place and what to do, and remarks on the machining."""
@@ -68,7 +69,7 @@ def check_command(
             dialect,
             root=root,
             ignore=options.codes_of(ignore),
-            **options.body_of(stock, resolution, fixture, target, tolerance),
+            **options.body_of(stock, resolution, fixture, target, tolerance, tools),
         )
     if as_json:
         print_json(_as_dict(found, strict))

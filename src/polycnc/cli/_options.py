@@ -102,6 +102,14 @@ Fixtures = Annotated[
         metavar="BOX|FILE",
     ),
 ]
+Tools = Annotated[
+    str | None,
+    typer.Option(
+        help="Tools of a LinuxCNC table (.tbl) or a list with a heading (.csv), in place of the machine's; "
+        "inch=FILE where lengths in it are inches.",
+        metavar="FILE",
+    ),
+]
 Target = Annotated[
     str | None,
     typer.Option(help="What is to come out: an STL file, as the stock lies.", metavar="FILE"),
@@ -266,6 +274,7 @@ class Body(TypedDict):
     fixtures: tuple[str, ...]
     target: str | None
     tolerance_mm: float | None
+    tools: str | None
 
 
 def body_of(
@@ -274,14 +283,16 @@ def body_of(
     fixtures: list[str] | None,
     target: str | None,
     tolerance: float | None,
+    tools: str | None,
 ) -> Body:
-    """Return what the options say of stock."""
+    """Return what the options say of stock and tools."""
     return Body(
         stock=stock,
         resolution_mm=resolution,
         fixtures=tuple(fixtures or ()),
         target=target,
         tolerance_mm=tolerance,
+        tools=tools,
     )
 
 

@@ -77,19 +77,19 @@ def run_command(
     target: options.Target = None,
     tolerance: options.Tolerance = None,
     resolution: options.Resolution = None,
+    tools: options.Tools = None,
     save_stock: options.SaveStock = None,
     save_parameters: options.SaveParameters = None,
 ) -> None:
     """Run part programs on a simulated machine and say how long they take and where they go."""
-    from polycnc import runner
-    from polycnc.machine import load_machine
+    from polycnc import load_machine, runner
 
     outputs = _Outputs(trace, plot, screen, save_stock, save_parameters)
-    body = options.body_of(stock, resolution, fixture, target, tolerance)
-    outputs.check(programs, (*programs, machine, dialect, keys, target, *_files(stock, *body["fixtures"])))
+    body = options.body_of(stock, resolution, fixture, target, tolerance, tools)
     named = load_machine(machine)
+    bodies = _files(stock, *body["fixtures"], *(each.form for each in (named.stock, *named.fixtures) if each))
+    outputs.check(programs, (*programs, machine, dialect, keys, target, tools, *bodies))
     check_stock_file(save_stock, stock if stock is not None or named.stock is None else named.stock.form)
-    outputs.check(programs, _files(*(each.form for each in (named.stock, *named.fixtures) if each)))
     texts = [read_program(program) for program in programs]
     settings = runner.RunSettings(
         machine,

@@ -19,12 +19,13 @@ def view_command(
     units: options.PageUnits = None,
     stock: options.Stock = None,
     resolution: options.Resolution = None,
+    tools: options.Tools = None,
 ) -> None:
     """Run a part program and write a page that shows it: path, time, blocks, tools, speed."""
     from polycnc.runner import check_view_file, open_in_browser, program_text, time_text, view_program
     from polycnc.stock import file_of
 
-    inputs = [program, *(Path(each) for each in (machine, dialect) if each is not None)]
+    inputs = [program, *(Path(each) for each in (machine, dialect, tools) if each is not None)]
     if stock is not None and (body := file_of(stock)) is not None:
         inputs.append(body)
     text = program_text(program)
@@ -34,7 +35,14 @@ def view_command(
     inch = None if units is None else units is Units.INCH
     with progress_bar(program.name) as bar:
         view = view_program(
-            text, machine, dialect, inch=inch, stock=stock, resolution_mm=resolution, progress=bar
+            text,
+            machine,
+            dialect,
+            inch=inch,
+            stock=stock,
+            resolution_mm=resolution,
+            tools=tools,
+            progress=bar,
         )
     view.save(target)
     say(f"time       {time_text(view.result.time_s)}")

@@ -103,6 +103,7 @@ def inspect(
     fixtures: Iterable[str] = (),
     target: str | None = None,
     tolerance_mm: float | None = None,
+    tools: str | Path | None = None,
     progress: Progress | None = None,
 ) -> CheckReport:
     """Return the errors of a part program as `check` does, and what a machinist would remark on it.
@@ -128,6 +129,7 @@ def inspect(
         fixtures=tuple(fixtures),
         target=target,
         tolerance_mm=tolerance_mm,
+        tools=tools,
     )
     text = program_text(program)
     read = settings.dialect_of(text)

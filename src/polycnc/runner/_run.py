@@ -53,6 +53,7 @@ def run(
     fixtures: Iterable[str] = (),
     target: str | None = None,
     tolerance_mm: float | None = None,
+    tools: str | Path | None = None,
 ) -> TracedResult: ...
 
 
@@ -81,6 +82,7 @@ def run(
     fixtures: Iterable[str] = (),
     target: str | None = None,
     tolerance_mm: float | None = None,
+    tools: str | Path | None = None,
 ) -> RunResult: ...
 
 
@@ -108,6 +110,7 @@ def run(
     fixtures: Iterable[str] = (),
     target: str | None = None,
     tolerance_mm: float | None = None,
+    tools: str | Path | None = None,
 ) -> RunResult:
     """Run a part program on a simulated machine and return times, lengths, extents and messages.
 
@@ -131,7 +134,7 @@ def run(
     `fixtures` are boxes and STL files that nothing may touch, `target` is the STL file of what is to come out, within
     `tolerance_mm` (0.02 mm if absent). What is left, what was removed and what went wrong are in the result: `stock`,
     `removed_mm3`, `collisions`, `machined`. A machine file may say what is cut, and what holds it, where these
-    arguments do not.
+    arguments do not. `tools` is a tool table of LinuxCNC (.tbl) or a list (.csv) whose tools replace the machine's.
 
     Raises:
         ProgramError: with `check`, the program cannot be run as written; what ran before it is in `.result`.
@@ -155,6 +158,7 @@ def run(
         fixtures=tuple(fixtures),
         target=target,
         tolerance_mm=tolerance_mm,
+        tools=tools,
     )
     return run_program(
         program, settings, trace=trace, check=check, rows=rows, tagged_rows=tagged_rows, progress=progress

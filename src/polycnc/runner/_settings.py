@@ -56,6 +56,7 @@ class RunSettings:
     fixtures: tuple[str, ...] = ()
     target: str | None = None
     tolerance_mm: float | None = None
+    tools: str | Path | None = None
     save_parameters: str | Path | None = None
     """Where the parameters that outlive the program are written at its end."""
     past_errors: bool = False
@@ -130,14 +131,21 @@ class RunSettings:
         return replace(chosen, dialect=chosen.dialect.leaving_out(self.ignore))
 
     def machine_of(self, text: ProgramText) -> MachineConfig:
-        """Return the machine for a program, see `machine_for`.
+        """Return the machine for a program, see `machine_for`, with the tools of a file.
 
         Raises:
-            UsageError: no such machine, dialect or code.
+            UsageError: no such machine, dialect, code or list of tools.
         """
-        if self.machine is not None:
-            return load_machine(self.machine)
-        return machine_for(None, self.dialect_of(text).dialect)
+        config = (
+            load_machine(self.machine)
+            if self.machine is not None
+            else machine_for(None, self.dialect_of(text).dialect)
+        )
+        if self.tools is None:
+            return config
+        from polycnc.runner.machine_sources import with_tools
+
+        return with_tools(config, self.tools)
 
     def root_of(self, program: Program) -> Path:
         """Return the folder with the files of the control.

@@ -19,7 +19,7 @@ from polycnc.stock._stock_text import stock_of_remarks
 from polycnc.stock._tally import Tally
 from polycnc.stock._target import TOLERANCE_MM, Target, TargetComparison
 from polycnc.stock._tool import Tool, ToolKind
-from polycnc.stock._tool_text import tool_number, tool_of_remark
+from polycnc.stock._tool_text import CHAMFER_DEG, POINT_DEG, tool_number, tool_of_remark
 from polycnc.stock._turned import Turned
 from polycnc.stock._turned_cutting import TurnedCutting
 from polycnc.stock._turned_solid import TurnedTarget, turned_fixtures_of
@@ -28,7 +28,9 @@ from polycnc.stock._voxels import Voxels
 from polycnc.stock._ways import runs
 
 __all__ = [
+    "CHAMFER_DEG",
     "MESH_FORMATS",
+    "POINT_DEG",
     "TOLERANCE_MM",
     "Arc",
     "Body",

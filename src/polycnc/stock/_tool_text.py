@@ -47,8 +47,8 @@ _UNLIKE = re.compile(
 )
 _TEETH = re.compile(r"(?<![\d.])(\d{1,2})[ -]?(?:flutes?|fl|teeth|tooth)\b(?! *len)", re.IGNORECASE)
 _LEFT_HAND = re.compile(r"\bleft[ -]?hand(?:ed)?\b|\bLH\b", re.IGNORECASE)
-_POINT_DEG = 118.0
-_CHAMFER_DEG = 90.0
+POINT_DEG = 118.0
+CHAMFER_DEG = 90.0
 _MOST_FLANK_DEG = 60.0
 _ALL_ROUND = 0.49  # of the diameter: the corner of a ball, rounded
 _KINDS = (
@@ -117,9 +117,9 @@ def _tool(kind: ToolKind, size: float, corner: float, angle: float) -> Tool | No
         case ToolKind.BULL:
             return Tool(kind, size, corner_mm=corner) if corner > 0.0 else None
         case ToolKind.DRILL:
-            return Tool(kind, size, angle_deg=angle or _POINT_DEG)
+            return Tool(kind, size, angle_deg=angle or POINT_DEG)
         case ToolKind.CHAMFER:
-            return Tool(kind, size, angle_deg=angle or _CHAMFER_DEG)
+            return Tool(kind, size, angle_deg=angle or CHAMFER_DEG)
         case ToolKind.TAPER:
             return Tool(kind, size, angle_deg=angle) if angle > 0.0 else None
         case _:

@@ -4,24 +4,17 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Iterator, Mapping
 from pathlib import Path
 
-from polycnc.errors import ConfigurationError, SourcePosition
 from polycnc.runner.machine_sources._facts import LeftOut, Settings
+from polycnc.runner.machine_sources._tool_table import LARGEST_BYTES, Tool, table_rows
 
-LARGEST_BYTES = 1_000_000
-_WORD = re.compile(r"([A-Za-z])[ \t]*([-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+))")
 _NUMBER = re.compile(r"[-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][-+]?[0-9]{1,3})?")
-_TIPS = (0, 4, 3, 2, 1, 5, 8, 7, 6, 9)
-"""The tip of a tool of the machine file by Q. Source: LinuxCNC user manual, "Lathe User Information"."""
 _SECTION = re.compile(r"\s*\[([^\]]+)\]")
 _REMAP = re.compile(r"REMAP\s*=\s*([A-Za-z](?:[0-9]+(?:\.[0-9])?)?)(?![^\s])")
 _DOES = re.compile(r"\b(?:ngc|python)\s*=\s*[\w.-]+")
 _FOLDERS = ("DISPLAY.PROGRAM_PREFIX", "RS274NGC.SUBROUTINE_PATH")
 _MOST_SETTINGS = 10_000
-
-Tool = dict[str, float | str]
 
 
 def programs_of(settings: Settings, *, inch: bool) -> tuple[dict[str, object], tuple[LeftOut, ...]]:
@@ -93,61 +86,13 @@ def tools_of(settings: Settings, to_mm: float) -> tuple[dict[int, Tool], tuple[L
         return {}, (LeftOut(f"EMCIO.TOOL_TABLE = {entry.text}", "there is no such file"),)
     if len(content) > LARGEST_BYTES:
         raise entry.error(f"the tool table {path} is too large", "Name another file.")
-    tools: dict[int, Tool] = {}
-    left: list[LeftOut] = []
-    for number, line in enumerate(content.decode("utf-8", "replace").splitlines(), 1):
-        words, text = _words(line, SourcePosition(str(path), number, 1, line))
-        if words:
-            index, tool, others = _tool(words, text, to_mm, SourcePosition(str(path), number, 1, line))
-            tools[index] = tool
-            left += [LeftOut(f"{letter} of tool {index}", "tools shift X, Y and Z") for letter in others]
-    return tools, tuple(left)
-
-
-def _words(line: str, position: SourcePosition) -> tuple[dict[str, float], str]:
-    """Return the words of a line, and its remark."""
-    body, _, text = line.partition(";")
-    words = {found[1].upper(): float(found[2]) for found in _WORD.finditer(body)}
-    if _WORD.sub("", body).strip() or not all(map(math.isfinite, words.values())):
-        raise ConfigurationError(
-            "this is no tool",
-            position=position,
-            hint="A line of a tool table is like: T3 P3 Z12.5 D6 ; end mill",
-        )
-    return words, text.strip()
-
-
-def _tool(
-    words: Mapping[str, float], text: str, to_mm: float, position: SourcePosition
-) -> tuple[int, Tool, Iterator[str]]:
-    """Return the number of a tool, its data, and the letters that have no place."""
-
-    def whole(letter: str, most: int) -> int:
-        value = words.get(letter, -1.0 if letter == "T" else 0.0)
-        if value != round(value) or not 0 <= value <= most:
-            raise ConfigurationError(
-                f"{letter} of a tool is a whole number from 0 to {most}",
-                position=position,
-                hint="Correct the line.",
-            )
-        return int(value)
-
-    tool: Tool = {}
-    for key, letter, scale in (
-        ("length_mm", "Z", to_mm),
-        ("x_mm", "X", to_mm),
-        ("y_mm", "Y", to_mm),
-        ("radius_mm", "D", to_mm / 2.0),
-    ):
-        if value := words.get(letter, 0.0):
-            tool[key] = (abs(value) if letter == "D" else value) * scale
-    if words.get("D", 0.0) < 0.0:  # G41 goes to the right of the contour, G42 to the left
-        tool["wear_radius_mm"] = words["D"] * to_mm
-    if tip := _TIPS[whole("Q", 9)]:
-        tool["tip"] = tip
-    if text:
-        tool["description"] = text
-    return whole("T", 99_999), tool, (each for each in "ABCUVWIJ" if words.get(each, 0.0))
+    found = dict(table_rows(content.decode("utf-8", "replace"), str(path), to_mm))
+    left = (
+        LeftOut(f"{letter} of tool {number}", "tools shift X, Y and Z")
+        for number, (_, letters) in found.items()
+        for letter in letters
+    )
+    return {number: tool for number, (tool, _) in found.items()}, tuple(left)
 
 
 def _beside(folder: Path, name: str) -> Path | None:

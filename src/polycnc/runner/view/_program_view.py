@@ -25,6 +25,7 @@ def view_program(
     inch: bool | None = None,
     stock: str | None = None,
     resolution_mm: float | None = None,
+    tools: str | Path | None = None,
     progress: Progress | None = None,
 ) -> View:
     """Run a program and return its view, in memory that does not grow with the length of the run.
@@ -37,7 +38,12 @@ def view_program(
     """
     text = program_text(program)
     settings = RunSettings(
-        machine, dialect, skip_levels=frozenset(skip_levels), stock=stock, resolution_mm=resolution_mm
+        machine,
+        dialect,
+        skip_levels=frozenset(skip_levels),
+        stock=stock,
+        resolution_mm=resolution_mm,
+        tools=tools,
     )
     config = settings.machine_of(text)
     collector = TrackCollector(tuple(axis.unit for axis in config.axes), laser=config)
