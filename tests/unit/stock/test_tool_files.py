@@ -34,7 +34,9 @@ def _tools(folder: Path, name: str, text: str, prefix: str = "") -> dict[int, To
 def test_a_list_as_it_is_exported(tmp_path: Path) -> None:
     found = _tools(tmp_path, "list.csv", EXPORTED)
     assert found == {
-        1: ToolConfig(radius_mm=3.0, shape="flat", flute_mm=20.0, teeth=2, description="flat end mill 6 mm, two flutes"),
+        1: ToolConfig(
+            radius_mm=3.0, shape="flat", flute_mm=20.0, teeth=2, description="flat end mill 6 mm, two flutes"
+        ),
         2: ToolConfig(
             radius_mm=6.35, shape="bull", corner_mm=1.5875, flute_mm=25.4, teeth=4,
             description="bull nose end mill half inch",
