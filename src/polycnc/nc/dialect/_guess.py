@@ -82,7 +82,7 @@ _SIGNS = (
     _sign("haas", rb"(?<![A-Z])G[ \t]*150[ \t]+(?:[A-Z][-+0-9. \t]*)*P[ \t]*[0-9]"),
     _sign("fanuc", rb"(?<![A-Z])G[ \t]*6[56](?:\.1)?[ \t]*(?:[A-Z][-+0-9. \t]*)*P[ \t]*[0-9]"),
     _sign("fanuc", _NUMBER + rb"(?:/[0-9]?[ \t]*)?(?:" + _MACRO + rb")"),
-    _sign("fanuc", rb"(?<![A-Z])G[ \t]*(?:16|6[89]|5[01]\.1|54\.1)(?![0-9.])"),
+    _sign("fanuc", rb"(?<![A-Z])G[ \t]*(?:16|31|6[89]|5[01]\.1|54\.1)(?![0-9.])"),
     _sign("fanuc", rb"(?:(?<=\A\n)|(?<=\A\n%\n)|(?<=\A\n%\r\n)):[ \t]*[0-9]{1,8}(?=[ \t]*(?:[\r\n(;]|\Z))"),
     _sign("fanuc", _LINE + rb"O[ \t]*[0-9]{1,8}(?=[ \t]*(?:[\r\n(;]|\Z))"),
 )
@@ -96,6 +96,8 @@ _MILL = re.compile(
     rb"(?<![A-Z])(?:Y[ \t]*[-+.0-9#\[]|M[ \t]*0?6(?![0-9])|G[ \t]*4[34](?![0-9]))", re.IGNORECASE
 )
 _TURNING = {"fanuc": "fanuc-lathe"}
+_SYSTEM_B = re.compile(rb"(?<![A-Z])G[ \t]*(?:7[79]|9[15])(?![0-9.])", re.IGNORECASE)
+"""Codes of turning controls that G code system A does not have."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -122,7 +124,7 @@ def choose_dialect(text: ProgramText, explicit: str | Path | Dialect | None = No
     for name in DIALECTS:
         if extension and extension in load_dialect(name).extensions:
             return ChosenDialect(_with_remarks(load_dialect(name), b"\n" + text.content[:_LOOKED_AT]))
-    words = _words(text)
+    words = words_of(text)
     default = load_dialect(DEFAULT_DIALECT)
     for sign in _UNREADABLE:
         if found := sign.pattern.search(words):
@@ -139,6 +141,8 @@ def choose_dialect(text: ProgramText, explicit: str | Path | Dialect | None = No
             if remarks and lathe is None and sign is _NUMBERED:
                 continue
             dialect = load_dialect(lathe or sign.name)
+            if dialect.name == "fanuc-lathe" and (code := _SYSTEM_B.search(words)):
+                dialect, found = load_dialect("fanuc-lathe-b"), code
             if remarks:
                 dialect = _with_remarks(dialect, with_comments)
             line = text.position(_begin(found)).line
@@ -179,9 +183,9 @@ def _unreadable(text: ProgramText, sign: _Sign, found: re.Match[bytes]) -> Progr
     )
 
 
-def _words(text: ProgramText) -> bytes:
+def words_of(text: ProgramText, most: int = _LOOKED_AT) -> bytes:
     """Return a new line and the beginning of a text, blanks in its comments and strings."""
-    begin = b"\n" + text.content[:_LOOKED_AT]
+    begin = b"\n" + text.content[:most]
     return _NOTHING.sub(lambda found: found[0][:1] + b" " * (len(found[0]) - 1), begin)
 
 

@@ -26,7 +26,7 @@ from polycnc.nc.macro._statement_values import (
     repetitions,
     stop,
 )
-from polycnc.nc.macro._variables import LEVELS, LOCALS, MacroError, Value, checked
+from polycnc.nc.macro._variables import LEVELS, LOCALS, NO_VALUE, MacroError, Value, checked
 from polycnc.nc.modal._modal import INCH
 from polycnc.nc.sources._block_source import (
     CallProgram,
@@ -341,7 +341,7 @@ class MacroSource:
         code = self._code
         found = code.shape.find(number, offset)
         if found is None:
-            hint = "Check the block number; a variable without a value counts as 0."
+            hint = f"Check the block number; {NO_VALUE}."
             raise MacroError(f"there is no block N{number} in this program", hint, "PS0128")
         return code.places[found]
 
@@ -444,7 +444,7 @@ def _meaning(error: Exception) -> tuple[str, str, str]:
     if isinstance(error, MacroError):
         return error.what, error.hint, error.code
     if isinstance(error, ZeroDivisionError):
-        return "a division by zero", "Check the divisor.", "PS0112"
+        return "a division by zero", f"Check the divisor; {NO_VALUE}.", "PS0112"
     return "this cannot be calculated", "Check the values.", "PS0119"
 
 
