@@ -26,7 +26,7 @@ LATHE = "lathe2"
 def machine_for(
     machine: str | Path | MachineConfig | None, dialect: Dialect, text: ProgramText
 ) -> MachineConfig:
-    """Return the machine that was named, else the one for a program: a lathe for those of lathes, and the axes it names.
+    """Return the machine that was named, else one for a program: a lathe, or a mill with the axes it has words for.
 
     Raises:
         UsageError: no such machine.

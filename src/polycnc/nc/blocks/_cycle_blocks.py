@@ -216,6 +216,8 @@ def _words(block: BlockContext, axes: tuple[int, int, int]) -> CycleWords:
         bottom = depth if depth is not None else cycle.words.depth_mm
         if back is not None and bottom is not None:
             back += bottom
+    if retract is None and cycle.words.retract_mm is None:
+        retract = _level_before(block, axes[2])
     pecks = cycle.action in PECKING or not _strict(block)
     shift_p, shift_q = (length("I"), length("J")) if cycle.action in SHIFTING else (None, None)
     return CycleWords(
@@ -227,6 +229,15 @@ def _words(block: BlockContext, axes: tuple[int, int, int]) -> CycleWords:
         back_mm=back,
         repeats=_repeats(block, is_back_bore),
     )
+
+
+def _level_before(block: BlockContext, axis: int) -> float | None:
+    """Return where the axis stood before a cycle without R; None where R must be there."""
+    cycle = block.after.cycle
+    if cycle.action == _BACK_BORE or _strict(block):
+        return None
+    block.note(f"G{cycle.code:g} without R: it retracts to where the axis stood before the cycle")
+    return cycle.initial - float(block.after.modal.offset[axis])
 
 
 def _dwell(block: BlockContext, cycle: Cycle) -> float | None:

@@ -119,7 +119,9 @@ def dwell(block: BlockContext, g: GWord) -> list[Wait]:
             word,
         )
     if 0.0 < word.value < _SHORTEST_MS and seconds != word.value and block.dialect.dwell[letter] == "s_or_ms":
-        block.note(f"{word.letter}{code_text(word.value)} is {word.value:g} ms: with a decimal point it counts seconds")
+        block.note(
+            f"{word.letter}{code_text(word.value)} is {word.value:g} ms: with a decimal point it counts seconds"
+        )
     return [Wait(seconds, block.line)]
 
 

@@ -9,8 +9,12 @@ from polycnc.nc.dialect._guess import words_of
 from polycnc.nc.text._program import ProgramText
 
 _LOOKED_AT = 1 << 20  # bytes: which axes turn, a program shows early
-_WORD = re.compile(rb"(?<![A-Za-z#,.\]])([ABCUVW])[ \t]*(?=[-+]?[ \t]*\.?[0-9]|[-+]?[ \t]*[#\[])", re.IGNORECASE)
-_OTHER_MEANINGS = re.compile(rb"(?<![A-Z])(?:G[ \t]*0*(?:4|6[5-8]|10[1-9]|1[1-9][0-9])(?![0-9])|M[ \t]*98)", re.IGNORECASE)
+_WORD = re.compile(
+    rb"(?<![A-Za-z#,.\]])([ABCUVW])[ \t]*(?=[-+]?[ \t]*\.?[0-9]|[-+]?[ \t]*[#\[])", re.IGNORECASE
+)
+_OTHER_MEANINGS = re.compile(
+    rb"(?<![A-Z])(?:G[ \t]*0*(?:4|6[5-8]|10[1-9]|1[1-9][0-9])(?![0-9])|M[ \t]*98)", re.IGNORECASE
+)
 """Codes whose words are arguments or times."""
 _Y = re.compile(rb"(?<![A-Za-z#])Y[ \t]*[-+.0-9#\[]", re.IGNORECASE)
 _LINEAR = "UVW"
@@ -25,7 +29,9 @@ def further_axes(text: ProgramText, dialect: Dialect) -> str:
         return ""
     words = words_of(text, _LOOKED_AT)
     found = {
-        word[1].decode().upper() for word in _WORD.finditer(words) if not _OTHER_MEANINGS.search(_line(words, word))
+        word[1].decode().upper()
+        for word in _WORD.finditer(words)
+        if not _OTHER_MEANINGS.search(_line(words, word))
     }
     found -= set(dialect.ignored_addresses) | set(dialect.incremental)
     if not _Y.search(words):

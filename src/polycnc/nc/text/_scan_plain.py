@@ -43,7 +43,9 @@ _SENDER_COMMAND = re.compile(r"\$(?:\$|[#GNIX]|[0-9]+=[^;(]*)?[ \t]*(?=[;(]|\Z)|
 """What asks a control for something, unlocks it or sets it, and moves nothing."""
 _HOMING = re.compile(r"\$H[XYZABC]*[ \t]*(?=[;(]|\Z)", re.IGNORECASE)
 _NO_WORDS = re.compile(r"(?:[ \t]*(?:\([^)\r\n]*\)[ \t]*)*(?:[%$?~;][^\r\n]*)?(?:\r\n?|\n))*")
-_NESTED_NOTE = "brackets within a comment: it is read up to where they match, controls may end it at the first ')'"
+_NESTED_NOTE = (
+    "brackets within a comment: it is read up to where they match, controls may end it at the first ')'"
+)
 _SENDER_HINT = "It is a command that a sender gives the control, no block of a program: remove the line."
 
 
@@ -206,10 +208,9 @@ class _LineReader:
             self.place = match.end()
         elif char == ":" and at_start:
             self._read_label()
-        elif self.rules.sender_commands and (match := self._sender_command()):
-            self.flags |= MESSAGE
-            self.note = f"{match[0].strip()}: a command to the control, which is not carried out"
-            self.place = match.end()
+        elif self.rules.sender_commands and char in "$?~" and (command := self._sender_command()):
+            self._note(f"{command[0].strip()}: a command to the control, which is not carried out")
+            self.place = command.end()
         elif self._is_statement(char) or (at_start and self.rules.line_numbers and char in "0123456789."):
             self.flags |= STATEMENT
         else:
@@ -276,10 +277,13 @@ class _LineReader:
         for place in range(self.place, len(self.line)):
             depth += {"(": 1, ")": -1}.get(self.line[place], 0)
             if depth == 0:
-                self.note = _NESTED_NOTE
-                self.flags |= MESSAGE
+                self._note(_NESTED_NOTE)
                 return place
         return first
+
+    def _note(self, text: str) -> None:
+        self.flags |= MESSAGE
+        self.note = text
 
     def _keep_comment(self, comment: str) -> None:
         self.flags |= COMMENT
