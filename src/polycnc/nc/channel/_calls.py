@@ -27,6 +27,11 @@ from polycnc.nc.text._incoming import IncomingText
 from polycnc.nc.text._place import Place
 from polycnc.nc.text._program import ProgramText
 
+_WHERE = (
+    "Write it after the program, beginning with O{program}, or in a file O{program} beside it; "
+    "--ignore M98,G65 leaves all calls out."
+)
+
 
 class Calls:
     """Keep the stack of running programs, the main program at the bottom, and let `reader` read the present one.
@@ -258,8 +263,7 @@ class Calls:
         if found is None:
             return (
                 f"there is no sub-program {program}",
-                f"Write it after the program, beginning with O{program}, or in a file O{program} beside it; "
-                "--ignore M98,G65 leaves all calls out.",
+                _WHERE.format(program=program),
                 self._code("PS0078"),
             )
         return None

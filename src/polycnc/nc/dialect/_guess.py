@@ -137,20 +137,27 @@ def choose_dialect(text: ProgramText, explicit: str | Path | Dialect | None = No
         if found := sign.pattern.search(with_comments):
             return ChosenDialect(default, problem=_unreadable(text, sign, found))
     for sign in _SIGNS:
-        if found := sign.pattern.search(words):
-            remarks = sign in (_CODES, _NUMBERED, *_CYCLES) and _has_remarks(with_comments)
-            turret = _TURRET.search(words) and not _MILL.search(words)
-            lathe = _TURNING.get(sign.name) if turret else None
-            if remarks and lathe is None and sign is _NUMBERED:
-                continue
-            dialect = load_dialect(lathe or sign.name)
-            if dialect.name == "fanuc-lathe" and (code := _SYSTEM_B.search(words)):
-                dialect, found = load_dialect("fanuc-lathe-b"), code
-            if remarks:
-                dialect = _with_remarks(dialect, with_comments)
+        if (chosen := _by_sign(sign, words, with_comments)) is not None:
+            dialect, found = chosen
             line = text.position(_begin(found)).line
             return ChosenDialect(dialect, f"{_shown(text, found)} in line {line}")
     return ChosenDialect(default)
+
+
+def _by_sign(sign: _Sign, words: bytes, with_comments: bytes) -> tuple[Dialect, re.Match[bytes]] | None:
+    """Return the dialect that a sign tells, and what was found; None where it tells none."""
+    found = sign.pattern.search(words)
+    if found is None:
+        return None
+    remarks = sign in (_CODES, _NUMBERED, *_CYCLES) and _has_remarks(with_comments)
+    turret = _TURRET.search(words) and not _MILL.search(words)
+    lathe = _TURNING.get(sign.name) if turret else None
+    if remarks and lathe is None and sign is _NUMBERED:
+        return None
+    dialect = load_dialect(lathe or sign.name)
+    if dialect.name == "fanuc-lathe" and (code := _SYSTEM_B.search(words)):
+        dialect, found = load_dialect("fanuc-lathe-b"), code
+    return _with_remarks(dialect, with_comments) if remarks else dialect, found
 
 
 def _has_remarks(text: bytes) -> bool:

@@ -42,6 +42,7 @@ _REMARK_HINT = "A block holds words like X12.5; remarks go into a comment."
 _SENDER_COMMAND = re.compile(r"\$(?:\$|[#GNIX]|[0-9]+=[^;(]*)?[ \t]*(?=[;(]|\Z)|[?~]", re.IGNORECASE)
 """What asks a control for something, unlocks it or sets it, and moves nothing."""
 _HOMING = re.compile(r"\$H[XYZABC]*[ \t]*(?=[;(]|\Z)", re.IGNORECASE)
+_HEAD_BYTES = 1 << 14
 _NO_WORDS = re.compile(r"(?:[ \t]*(?:\([^)\r\n]*\)[ \t]*)*(?:[%$?~;][^\r\n]*)?(?:\r\n?|\n))*")
 _NESTED_NOTE = (
     "brackets within a comment: it is read up to where they match, controls may end it at the first ')'"
@@ -206,7 +207,12 @@ class _LineReader:
             match = _matched(_SKIP, self.line, self.place)
             self.skip_level = whole(match["level"] or "1")
             self.place = match.end()
-        elif char == ":" and at_start:
+        else:
+            self._read_mark(char, at_start=at_start)
+
+    def _read_mark(self, char: str, *, at_start: bool) -> None:
+        """Read a label, a command to the control, or what makes the line a statement."""
+        if char == ":" and at_start:
             self._read_label()
         elif self.rules.sender_commands and char in "$?~" and (command := self._sender_command()):
             self._note(f"{command[0].strip()}: a command to the control, which is not carried out")
@@ -299,7 +305,8 @@ class _LineReader:
         if self.line[: self.place].strip():
             return None
         found = _SENDER_COMMAND.match(self.line, self.place)
-        if found is None and (homing := _HOMING.match(self.line, self.place)):
+        is_early = self.offset <= _HEAD_BYTES
+        if found is None and is_early and (homing := _HOMING.match(self.line, self.place)):
             before = self.text.content[: self.offset].decode("latin-1")
             found = homing if _NO_WORDS.fullmatch(before) else None
         return found
