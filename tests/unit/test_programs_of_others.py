@@ -6,13 +6,13 @@ import math
 from pathlib import Path
 
 import pytest
-from tests.support.programs import notes, prepare, refusal
 
 import polycnc
 from polycnc.errors import UsageError
 from polycnc.machine import load_machine, preset_text
 from polycnc.nc import ProgramText, choose_dialect
 from polycnc.runner import RunSettings, machine_for
+from support.programs import notes, prepare, refusal
 
 # --- the axes of the machine
 
