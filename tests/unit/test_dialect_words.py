@@ -427,7 +427,6 @@ def test_haas_mirrors() -> None:
         ("M97 P1000", "M97 is not supported yet"),  # a call of a line: no auxiliary function
         ("M96 P5 Q1", "M96 is not supported yet"),
         ("G150 P1 D1", "G150 is not supported yet (1 block has it)"),
-        ("G12 I5. D1 F100.", "G12 is not supported yet (1 block has it)"),
         ("G70 I5. J0 L6", "G70 is not supported yet (1 block has it)"),
         ("G5.1 Q1", "G5.1 is not known in dialect 'haas'"),
         ("G77 Z-3. R2. F100. Q0.5", "G77 bores from R up to Z here, and Z -3 does not lie above R 2"),

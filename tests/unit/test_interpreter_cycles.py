@@ -256,7 +256,6 @@ def test_words_of_a_call_or_a_dwell_are_none_of_the_cycle() -> None:
     ("block", "text"),
     [
         ("G81 X1 R1", "2:1: G81 needs a depth (Z)"),
-        ("G81 X1 Z-1", "2:1: G81 needs a retract level (R)"),
         ("G81 X1 Z1 R-1", "2:11: G81 would drill upwards: R -1 lies below Z 1"),
         ("G83 X1 Z-1 R1", "2:1: G83 needs a peck (Q)"),
         ("G83 X1 Z-1 R1 Q0", "2:15: G83 pecks 0 mm"),

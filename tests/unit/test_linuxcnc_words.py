@@ -44,7 +44,6 @@ REFUSALS = [
     ("G10 L20 P1 X3 R5", "G10 L20 with R"),
     ("G10 L3 P1 X3", "L3 is not there"),
     ("G10 P1 X3", "without L and P"),
-    ("G10 L1 P3 X3", "tool 3 is not in the tool table"),
     ("G43.2 X3", "without H"),
     ("G0 G43.1 X3", "both use the axis words"),
     ("G41.1 X3", "without D"),

@@ -110,7 +110,7 @@ class _Editor:
             return None
         before = await self._answers.run(uri, lambda _: self._holds_before(uri, document, line, dialect))
         text, span = code or ("", at[1] if at else Span(line, character, character + 1))
-        config = machine_for(self._machine, dialect)
+        config = machine_for(self._machine, dialect, ProgramText.from_text(document.text, name_of(uri)))
         if not text and at and before:
             meaning = word_meaning(at[0], before[0], config, dialect)
             text = f"**{at[0]}** ({dialect.name}): {meaning}" if meaning else ""
@@ -281,7 +281,7 @@ class _Editor:
             with suppress(Overtaken, TooLong):
                 return survey(
                     program,
-                    machine_for(self._machine, dialect),
+                    machine_for(self._machine, dialect, program),
                     dialect,
                     root=_root(name),
                     progress=within(LONGEST_S, go_on),
@@ -303,7 +303,11 @@ class _Editor:
         if program.endless_line() is not None:
             return None
         return holds_before(
-            program, line + 1, machine_for(self._machine, dialect), dialect, root=_root(program.name)
+            program,
+            line + 1,
+            machine_for(self._machine, dialect, program),
+            dialect,
+            root=_root(program.name),
         )
 
     def _publish(self, uri: str, document: Document, found: list[Finding]) -> None:

@@ -20,7 +20,14 @@ from polycnc.machine._config_stock import FixtureConfig, StockConfig
 from polycnc.machine._config_tool import ToolConfig
 from polycnc.machine._io import IoBits, IoImage, scan_edges
 from polycnc.machine._machine import AxisState, Machine, MachineStatus, Reason
-from polycnc.machine._presets import DEFAULT_MACHINE, PRESETS, load_machine, parse_machine, preset_text
+from polycnc.machine._presets import (
+    ADDED_AXES,
+    DEFAULT_MACHINE,
+    PRESETS,
+    load_machine,
+    parse_machine,
+    preset_text,
+)
 from polycnc.machine._snapshot import Array, Plain, Snapshot, SnapshotError, arrays_of, damaged_snapshot
 from polycnc.machine._state_walk import copied, described, is_same, restore_state
 from polycnc.machine._toml import (
@@ -55,6 +62,7 @@ if TYPE_CHECKING:
     from polycnc.machine._ways import Condition, Elapsed, Free, Poll, RealTime, Step, Way, wait
 
 __all__ = [
+    "ADDED_AXES",
     "AXIS_COLUMNS",
     "DEFAULT_MACHINE",
     "LARGEST_POSITION",

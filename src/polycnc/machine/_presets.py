@@ -16,8 +16,9 @@ PRESETS = ("card6", "lathe2", "mill3", "mill5", "vmc3")
 def load_machine(source: str | Path | MachineConfig | None = None) -> MachineConfig:
     """Return the machine that `source` names.
 
-    `source` is the name of a preset, the path of a machine file (a `Path`, or text with a folder or with the
-    ending ".toml"), or a configuration, which is returned as it is. None is the machine "mill3".
+    `source` is the name of a preset, also with further axes like "mill3+A", the path of a machine file (a `Path`, or
+    text with a folder or with the ending ".toml"), or a configuration, which is returned as it is. None is the machine
+    "mill3".
 
     Raises:
         UsageError: There is no such preset.
@@ -28,7 +29,7 @@ def load_machine(source: str | Path | MachineConfig | None = None) -> MachineCon
     if source is None:
         source = DEFAULT_MACHINE
     if isinstance(source, str):
-        if source in PRESETS:
+        if source.partition("+")[0] in PRESETS:
             return parse_machine(preset_text(source), f"{source}.toml")
         if not _is_path(source):
             raise UsageError(f"there is no machine '{source}'", hint=_instead(source))
@@ -37,15 +38,45 @@ def load_machine(source: str | Path | MachineConfig | None = None) -> MachineCon
     return config.model_copy(update={"programs": config.programs.beside(Path(source).parent)})
 
 
+_ROTARY_AXIS = """
+[[axis]]
+name = "{name}"
+kind = "rotary"
+carries = "part"
+vmax_deg_s = 180
+amax_deg_s2 = 1200
+"""
+_LINEAR_AXIS = """
+[[axis]]
+name = "{name}"
+vmax_mm_s = 500
+amax_mm_s2 = 5000
+"""
+_ADDED = dict.fromkeys("ABC", _ROTARY_AXIS) | dict.fromkeys("UVW", _LINEAR_AXIS)
+ADDED_AXES = "".join(_ADDED)
+"""Axes that a preset can have besides its own, like "mill3+A"."""
+
+
 def preset_text(name: str) -> str:
-    """Return the machine file of a preset, to read or to start an own file from.
+    """Return the machine file of a preset, to read or to start an own file from; "mill3+A" has a further axis.
+
+    A, B and C turn the part, U, V and W move straight.
 
     Raises:
-        UsageError: There is no such preset.
+        UsageError: There is no such preset, or no such axis to add.
     """
-    if name not in PRESETS:
+    preset, _, further = name.partition("+")
+    if preset not in PRESETS:
         raise UsageError(f"there is no preset '{name}'", hint=_instead(name))
-    return (files("polycnc.machine") / "presets" / f"{name}.toml").read_text(encoding="utf-8")
+    text = (files("polycnc.machine") / "presets" / f"{preset}.toml").read_text(encoding="utf-8")
+    for letter in further:
+        if letter not in _ADDED or f'name = "{letter}"' in text:
+            raise UsageError(
+                f"'{letter}' cannot be added to the axes of {preset}",
+                hint=f"Add axes of {', '.join(ADDED_AXES)} that it lacks, each once, like {DEFAULT_MACHINE}+A.",
+            )
+        text += _ADDED[letter].format(name=letter)
+    return text.replace(f'name = "{preset}"', f'name = "{name}"')
 
 
 def parse_machine(text: str, file: str) -> MachineConfig:

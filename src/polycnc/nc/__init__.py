@@ -14,6 +14,7 @@ from polycnc.nc.channel._options import ChannelOptions
 from polycnc.nc.channel._preparation import NAMED_END
 from polycnc.nc.channel._sub_programs import Library, SubPrograms
 from polycnc.nc.dialect._dialect import DEFAULT_DIALECT, DIALECTS, Dialect, load_dialect
+from polycnc.nc.dialect._further_axes import further_axes
 from polycnc.nc.dialect._guess import ChosenDialect, choose_dialect, dialect_for
 from polycnc.nc.modal._actions import Action, Family, Group, MAction
 from polycnc.nc.modal._modal_snapshot import Spindle
@@ -109,6 +110,7 @@ __all__ = [
     "Zero",
     "choose_dialect",
     "dialect_for",
+    "further_axes",
     "language_for",
     "line_of",
     "load_dialect",

@@ -7,8 +7,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from polycnc.errors import UsageError
-from polycnc.machine import MachineConfig, load_machine
-from polycnc.nc import ChosenDialect, Dialect, ProgramText, choose_dialect
+from polycnc.machine import DEFAULT_MACHINE, MachineConfig, load_machine
+from polycnc.nc import ChosenDialect, Dialect, ProgramText, choose_dialect, further_axes
 from polycnc.outputs import check_output, keep_inputs
 from polycnc.runner._execution import LOOP_LIMIT_S
 from polycnc.runner._program_control import Surroundings, check_screen_file, root_of
@@ -23,13 +23,20 @@ LATHE = "lathe2"
 """The machine for programs of lathes, where none is named."""
 
 
-def machine_for(machine: str | Path | MachineConfig | None, dialect: Dialect) -> MachineConfig:
-    """Return the machine that was named, else the one for programs of a dialect: a lathe for those of lathes.
+def machine_for(
+    machine: str | Path | MachineConfig | None, dialect: Dialect, text: ProgramText
+) -> MachineConfig:
+    """Return the machine that was named, else one for a program: a lathe, or a mill with the axes it has words for.
 
     Raises:
         UsageError: no such machine.
     """
-    return load_machine(LATHE if machine is None and dialect.diameter_axes else machine)
+    if machine is not None:
+        return load_machine(machine)
+    if dialect.diameter_axes:
+        return load_machine(LATHE)
+    further = further_axes(text, dialect)
+    return load_machine(f"{DEFAULT_MACHINE}+{further}" if further else None)
 
 
 @dataclass(frozen=True, slots=True)
@@ -139,7 +146,7 @@ class RunSettings:
         config = (
             load_machine(self.machine)
             if self.machine is not None
-            else machine_for(None, self.dialect_of(text).dialect)
+            else machine_for(None, self.dialect_of(text).dialect, text)
         )
         if self.tools is None:
             return config

@@ -15,6 +15,7 @@ from polycnc.nc.blocks import (
     _nurbs,
     _placing,
     _profile_cycles,
+    _round_pockets,
     _splines,
     _turning_blocks,
     _turning_cycles,
@@ -26,7 +27,16 @@ from polycnc.nc.blocks._words import GWord
 from polycnc.nc.modal._actions import Action, Family
 
 CODES: Mapping[Action, Handler] = dict(
-    handlers(_contour_cycles, _frames, _modal_words, _non_modal, _placing, _profile_cycles, _turning_cycles)
+    handlers(
+        _contour_cycles,
+        _frames,
+        _modal_words,
+        _non_modal,
+        _placing,
+        _profile_cycles,
+        _round_pockets,
+        _turning_cycles,
+    )
 )
 """What carries a code out; its row is in `Action`. Motions have modes, tool compensation and IGNORED codes steps."""
 

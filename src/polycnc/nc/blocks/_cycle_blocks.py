@@ -216,17 +216,30 @@ def _words(block: BlockContext, axes: tuple[int, int, int]) -> CycleWords:
         bottom = depth if depth is not None else cycle.words.depth_mm
         if back is not None and bottom is not None:
             back += bottom
+    retract = _level_before(block, axes[2]) if retract is None else retract
     pecks = cycle.action in PECKING or not _strict(block)
-    shift_p, shift_q = (length("I"), length("J")) if cycle.action in SHIFTING else (None, None)
     return CycleWords(
         depth_mm=depth,
         retract_mm=retract,
         peck_mm=length("Q", length_scale(modal)) if pecks else None,
         dwell_s=_dwell(block, cycle),
-        shift_mm=None if shift_p is None and shift_q is None else (shift_p or 0.0, shift_q or 0.0),
+        shift_mm=_shift(length("I"), length("J")) if cycle.action in SHIFTING else None,
         back_mm=back,
         repeats=_repeats(block, is_back_bore),
     )
+
+
+def _shift(p: float | None, q: float | None) -> tuple[float, float] | None:
+    return None if p is None and q is None else (p or 0.0, q or 0.0)
+
+
+def _level_before(block: BlockContext, axis: int) -> float | None:
+    """Return where the axis stood before a cycle that has never had R; None where R must be there."""
+    cycle = block.after.cycle
+    if cycle.action == _BACK_BORE or cycle.words.retract_mm is not None or _strict(block):
+        return None
+    block.note(f"G{cycle.code:g} without R: it retracts to where the axis stood before the cycle")
+    return cycle.initial - float(block.after.modal.offset[axis])
 
 
 def _dwell(block: BlockContext, cycle: Cycle) -> float | None:

@@ -32,6 +32,7 @@ from polycnc.units import MM_PER_INCH, SECONDS_PER_MINUTE
 
 INCREMENTS_PER_INCH_STEP = 0.1  # an increment in inch is a tenth of the number that it is in mm
 _DEFAULT_WORK_OFFSET = "G54"
+_SHORTEST_MS = 100.0  # less is hardly meant as milliseconds
 _TIME_LETTERS_WITH_INCREMENTS = "XU"
 
 
@@ -116,6 +117,10 @@ def dwell(block: BlockContext, g: GWord) -> list[Wait]:
             f"the dwell {word.letter}{code_text(word.value)} is {what}",
             "Write a time from 0 up, and mind its unit.",
             word,
+        )
+    if 0.0 < word.value < _SHORTEST_MS and seconds != word.value and block.dialect.dwell[letter] == "s_or_ms":
+        block.note(
+            f"{word.letter}{code_text(word.value)} is {word.value:g} ms: with a decimal point it counts seconds"
         )
     return [Wait(seconds, block.line)]
 

@@ -67,6 +67,8 @@ def words(block: BlockContext) -> None:
     """Sort the words, and refuse those that cannot stand in one block."""
     if block.block.flags & MESSAGE and block.block.message:
         block.note(f"MSG: {block.block.message}")
+    if block.block.note:
+        block.note(block.block.note)
     found = block.words
     if remaps := block.after.machine.programs.remaps:
         refuse_remaps(block, remaps)

@@ -119,7 +119,7 @@ def set_tool(block: BlockContext, g: GWord, table: int, number: int) -> None:
         ProgramError: there is no such tool, or a word has no meaning.
     """
     state, tables = block.after, block.after.tables
-    if not tables.has_tool(number):
+    if not tables.has_tool(number) and state.machine.tools:
         raise _no_tool(block, number, "P")
     for letter in "IJ":
         if word := block.words.take(letter):

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from polycnc.errors import ProgramError
+from polycnc.machine import ADDED_AXES
 from polycnc.nc.blocks._block import BlockContext
 from polycnc.nc.blocks._channel_state import of_another_channel
 from polycnc.nc.blocks._words import GWord, code_text
@@ -144,7 +145,9 @@ def refuse_rest(block: BlockContext, g: GWord) -> None:
 
 def _no_axis(block: BlockContext, name: str, word: Word) -> ProgramError:
     names = ", ".join(block.after.axis_names)
-    hint = f"Its axes are {names}; remove the word, or choose another machine."
+    preset = "lathe2" if block.dialect.diameter_axes else "mill3"
+    like = f", like {preset}+{name}" if name in ADDED_AXES else ""
+    hint = f"Its axes are {names}; remove the word, or choose another machine{like}."
     axes = block.dialect.incremental or block.dialect.language == "rs274"  # its lathes have U and W as axes
     if _WAYS.get(name) in block.after.axis_names and not axes:
         hint = (

@@ -27,6 +27,11 @@ from polycnc.nc.text._incoming import IncomingText
 from polycnc.nc.text._place import Place
 from polycnc.nc.text._program import ProgramText
 
+_WHERE = (
+    "Write it after the program, beginning with O{program}, or in a file O{program} beside it; "
+    "--ignore M98,G65 leaves all calls out."
+)
+
 
 class Calls:
     """Keep the stack of running programs, the main program at the bottom, and let `reader` read the present one.
@@ -162,10 +167,10 @@ class Calls:
 
     def enter(self, program: int | ProgramText, repeats: int, line: int, arguments: object = None) -> None:
         """Begin a sub-program that can be called, from `line`; nothing for no repeats."""
-        begin = self._find(program)
-        assert begin is not None
         if repeats < 1:
             return
+        begin = self._find(program)
+        assert begin is not None
         back = Back(self._reader.here, self._reader.end, line, self.within)
         self._all.append(Running(begin, repeats - 1, back, arguments=arguments))
         self._note_calls()
@@ -177,7 +182,7 @@ class Calls:
         Raises:
             ProgramError: it cannot be called.
         """
-        problem = self.problem(call.program, text, call.offset)
+        problem = self.problem(call.program, text, call.offset) if call.repeats > 0 else None
         if problem is not None:
             what, hint, code = problem
             raise ProgramError(what, position=text.position(call.offset), hint=hint, code=code)
@@ -258,7 +263,7 @@ class Calls:
         if found is None:
             return (
                 f"there is no sub-program {program}",
-                f"Write it after the program, beginning with O{program}, or in a file O{program} beside it.",
+                _WHERE.format(program=program),
                 self._code("PS0078"),
             )
         return None

@@ -149,6 +149,9 @@ class Initial(StrictModel):
     )
 
 
+_OTHER_M = {"auxiliary": MAction.AUXILIARY, "auxiliary_words": MAction.AUXILIARY_WORDS}
+
+
 class Dialect(StrictModel):
     """Describe a dialect completely; see docs/reference/dialects.md for the keys."""
 
@@ -169,7 +172,7 @@ class Dialect(StrictModel):
     m: Annotated[dict[str, str], AfterValidator(_known_m_actions)] = Field(
         description="M code = action, see the table of M actions."
     )
-    other_m: Literal["auxiliary", "error"] = Field(
+    other_m: Literal["auxiliary", "auxiliary_words", "error"] = Field(
         default="auxiliary", description="What any other M code is."
     )
     dwell: dict[str, Literal["s", "ms", "s_or_ms", "rev"]] = Field(
@@ -349,7 +352,7 @@ class Dialect(StrictModel):
 
     def m_action(self, code: int) -> MAction | None:
         """Return what an M code does, None if the dialect refuses it."""
-        other = MAction.AUXILIARY if self.other_m == "auxiliary" else None
+        other = _OTHER_M.get(self.other_m)
         return self._by_m.get(code, other)
 
     def leaving_out(self, codes: Iterable[str]) -> Dialect:

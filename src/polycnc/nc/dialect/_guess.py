@@ -79,10 +79,13 @@ _SIGNS = (
     _sign("grbl", _LINE + rb"\$(?:[0-9]+=|[HXCGIN#$]|J=)"),
     _sign("fanuc-lathe", rb"(?<![A-Z])G[ \t]*7[0-2][ \t]*P[0-9]+[ \t]*Q[0-9]+"),
     _sign("fanuc-lathe", rb"(?<![A-Z])G[ \t]*28[ \t]*(?:G[ \t]*0+[ \t]*)?U[-+.0-9]+[ \t]*(?=[W\r\n(;])"),
+    _sign(
+        "haas", rb"(?<![A-Z])G[ \t]*1[23](?=[^\r\n]*I[ \t]*[0-9.])(?=[^\r\n]*[DKQZ][ \t]*[-+0-9.])(?![0-9.])"
+    ),
     _sign("haas", rb"(?<![A-Z])G[ \t]*150[ \t]+(?:[A-Z][-+0-9. \t]*)*P[ \t]*[0-9]"),
     _sign("fanuc", rb"(?<![A-Z])G[ \t]*6[56](?:\.1)?[ \t]*(?:[A-Z][-+0-9. \t]*)*P[ \t]*[0-9]"),
     _sign("fanuc", _NUMBER + rb"(?:/[0-9]?[ \t]*)?(?:" + _MACRO + rb")"),
-    _sign("fanuc", rb"(?<![A-Z])G[ \t]*(?:16|6[89]|5[01]\.1|54\.1)(?![0-9.])"),
+    _sign("fanuc", rb"(?<![A-Z])G[ \t]*(?:16|31|6[89]|5[01]\.1|54\.1)(?![0-9.])"),
     _sign("fanuc", rb"(?:(?<=\A\n)|(?<=\A\n%\n)|(?<=\A\n%\r\n)):[ \t]*[0-9]{1,8}(?=[ \t]*(?:[\r\n(;]|\Z))"),
     _sign("fanuc", _LINE + rb"O[ \t]*[0-9]{1,8}(?=[ \t]*(?:[\r\n(;]|\Z))"),
 )
@@ -96,6 +99,8 @@ _MILL = re.compile(
     rb"(?<![A-Z])(?:Y[ \t]*[-+.0-9#\[]|M[ \t]*0?6(?![0-9])|G[ \t]*4[34](?![0-9]))", re.IGNORECASE
 )
 _TURNING = {"fanuc": "fanuc-lathe"}
+_SYSTEM_B = re.compile(rb"(?<![A-Z])G[ \t]*(?:7[79]|9[15])(?![0-9.])", re.IGNORECASE)
+"""Codes of turning controls that G code system A does not have."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -122,7 +127,7 @@ def choose_dialect(text: ProgramText, explicit: str | Path | Dialect | None = No
     for name in DIALECTS:
         if extension and extension in load_dialect(name).extensions:
             return ChosenDialect(_with_remarks(load_dialect(name), b"\n" + text.content[:_LOOKED_AT]))
-    words = _words(text)
+    words = words_of(text)
     default = load_dialect(DEFAULT_DIALECT)
     for sign in _UNREADABLE:
         if found := sign.pattern.search(words):
@@ -132,18 +137,27 @@ def choose_dialect(text: ProgramText, explicit: str | Path | Dialect | None = No
         if found := sign.pattern.search(with_comments):
             return ChosenDialect(default, problem=_unreadable(text, sign, found))
     for sign in _SIGNS:
-        if found := sign.pattern.search(words):
-            remarks = sign in (_CODES, _NUMBERED, *_CYCLES) and _has_remarks(with_comments)
-            turret = _TURRET.search(words) and not _MILL.search(words)
-            lathe = _TURNING.get(sign.name) if turret else None
-            if remarks and lathe is None and sign is _NUMBERED:
-                continue
-            dialect = load_dialect(lathe or sign.name)
-            if remarks:
-                dialect = _with_remarks(dialect, with_comments)
+        if (chosen := _by_sign(sign, words, with_comments)) is not None:
+            dialect, found = chosen
             line = text.position(_begin(found)).line
             return ChosenDialect(dialect, f"{_shown(text, found)} in line {line}")
     return ChosenDialect(default)
+
+
+def _by_sign(sign: _Sign, words: bytes, with_comments: bytes) -> tuple[Dialect, re.Match[bytes]] | None:
+    """Return the dialect that a sign tells, and what was found; None where it tells none."""
+    found = sign.pattern.search(words)
+    if found is None:
+        return None
+    remarks = sign in (_CODES, _NUMBERED, *_CYCLES) and _has_remarks(with_comments)
+    turret = _TURRET.search(words) and not _MILL.search(words)
+    lathe = _TURNING.get(sign.name) if turret else None
+    if remarks and lathe is None and sign is _NUMBERED:
+        return None
+    dialect = load_dialect(lathe or sign.name)
+    if dialect.name == "fanuc-lathe" and (code := _SYSTEM_B.search(words)):
+        dialect, found = load_dialect("fanuc-lathe-b"), code
+    return _with_remarks(dialect, with_comments) if remarks else dialect, found
 
 
 def _has_remarks(text: bytes) -> bool:
@@ -179,9 +193,9 @@ def _unreadable(text: ProgramText, sign: _Sign, found: re.Match[bytes]) -> Progr
     )
 
 
-def _words(text: ProgramText) -> bytes:
+def words_of(text: ProgramText, most: int = _LOOKED_AT) -> bytes:
     """Return a new line and the beginning of a text, blanks in its comments and strings."""
-    begin = b"\n" + text.content[:_LOOKED_AT]
+    begin = b"\n" + text.content[:most]
     return _NOTHING.sub(lambda found: found[0][:1] + b" " * (len(found[0]) - 1), begin)
 
 

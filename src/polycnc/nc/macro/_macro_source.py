@@ -26,7 +26,8 @@ from polycnc.nc.macro._statement_values import (
     repetitions,
     stop,
 )
-from polycnc.nc.macro._variables import LEVELS, LOCALS, MacroError, Value, checked
+from polycnc.nc.macro._variables import LEVELS, LOCALS, NO_VALUE, MacroError, Value, checked
+from polycnc.nc.modal._actions import Action
 from polycnc.nc.modal._modal import INCH
 from polycnc.nc.sources._block_source import (
     CallProgram,
@@ -41,6 +42,7 @@ from polycnc.nc.text._program import ProgramText
 from polycnc.nc.text._scan_plain import Word
 
 _COMMON_LAST = 999
+_MACRO_CALL = 65.0
 _WHOLE = frozenset("DHLMNOPST")
 _FEED_DECIMALS = 1e-4
 _INCH_INCREMENT = 0.1
@@ -311,7 +313,12 @@ class MacroSource:
         check_level(self._language.variables)
         spec = self._code.calls[index]
         arguments = Arguments(dict(zip(spec.numbers, values, strict=True)), by_code=spec.by_code)
-        return CallProgram(program_number(program), spec.line, spec.offset, repetitions(repeats), arguments)
+        times = repetitions(repeats)
+        channel = self._language.channel
+        if not spec.by_code and channel.dialect.g_action(_MACRO_CALL) is Action.LEFT_OUT:
+            channel.messages.note(f"G{_MACRO_CALL:g} is left out, as told", spec.line)
+            times = 0
+        return CallProgram(program_number(program), spec.line, spec.offset, times, arguments)
 
     def _sub(self, index: int, program: float, repeats: float) -> CallProgram:
         spec = self._code.calls[index]
@@ -341,7 +348,7 @@ class MacroSource:
         code = self._code
         found = code.shape.find(number, offset)
         if found is None:
-            hint = "Check the block number; a variable without a value counts as 0."
+            hint = f"Check the block number; {NO_VALUE}."
             raise MacroError(f"there is no block N{number} in this program", hint, "PS0128")
         return code.places[found]
 
@@ -444,7 +451,7 @@ def _meaning(error: Exception) -> tuple[str, str, str]:
     if isinstance(error, MacroError):
         return error.what, error.hint, error.code
     if isinstance(error, ZeroDivisionError):
-        return "a division by zero", "Check the divisor.", "PS0112"
+        return "a division by zero", f"Check the divisor; {NO_VALUE}.", "PS0112"
     return "this cannot be calculated", "Check the values.", "PS0119"
 
 

@@ -14,6 +14,7 @@ MacroType: TypeAlias = Literal["a", "b", "c"]
 Kind: TypeAlias = Literal["null", "local", "common", "permanent"]
 
 LOCALS = 33
+NO_VALUE = "a variable without a value counts as 0, and #1 to #33 have theirs from the call (G65)"
 LEVELS = 4
 """How deep macros may be nested below the main program, each level with its own local variables."""
 LARGEST = 2.0**159

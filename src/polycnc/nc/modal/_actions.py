@@ -173,6 +173,8 @@ class Action(IntEnum):
     POLAR_OFF = Group.POLAR, "", "Polar coordinates off"
     ADDITIONAL_OFFSET = Group.WORK_OFFSET, "P", "Select additional work offset P"
     ADDITIONAL_OFFSET_110 = Group.WORK_OFFSET, "", "Select additional work offset 1 by G110, 2 by G111 and so on"
+    POCKET_CW = Family.PATH, "axes I K Q D L", "Mill a circular pocket from its centre, clockwise"
+    POCKET_CCW = Family.PATH, "axes I K Q D L", "Mill a circular pocket from its centre, counter-clockwise"
     SKIP_MOVE = Family.PATH, "axes", "Straight at feed until the skip signal comes"
     TURN_FINISH = Family.CONTOUR_CYCLE, "P Q", "Finish the contour of blocks P to Q"
     TURN_ROUGH = Family.CONTOUR_CYCLE, "P Q U W R D", "Rough the contour along Z"

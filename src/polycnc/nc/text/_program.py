@@ -45,9 +45,17 @@ class TextRules(StrictModel):
     semicolon_comments: bool = Field(default=True, description="; begins a comment to the end of the line.")
     semicolon_ends: bool = Field(default=False, description="; may end a block, at the end of its line.")
     parenthesis_comments: bool = Field(default=True, description="( ) enclose a comment.")
+    nested_comments: bool = Field(
+        default=False, description="A comment with brackets in it ends where they match, else at the first )."
+    )
     unclosed_comments: bool = Field(default=False, description="A comment may end with its line.")
     blanks_in_numbers: bool = Field(
         default=False, description="Blanks between the digits of a number do not end it: X1 0 is X10."
+    )
+    sender_commands: bool = Field(
+        default=False,
+        description="A line that begins with $ or ? is a command to the control, which is noted and not carried out; "
+        "those that move are refused.",
     )
     line_numbers: bool = Field(
         default=False, description="A block may begin with a bare number or a point: then it is a statement."

@@ -39,6 +39,14 @@ _MESSAGE = re.compile(rf"{_B}MSG{_B},(?P<text>.*)", re.IGNORECASE | re.ASCII)
 _KNOWN = re.compile(rf"[A-Za-z0-9+\-./:%{re.escape(BLANK_BYTES.decode('ascii'))}]")
 
 _REMARK_HINT = "A block holds words like X12.5; remarks go into a comment."
+_SENDER_COMMAND = re.compile(r"\$(?:\$|[#GNIX]|[0-9]+=[^;(]*)?[ \t]*(?=[;(]|\Z)|[?~]", re.IGNORECASE)
+"""What asks a control for something, unlocks it or sets it, and moves nothing."""
+_HOMING = re.compile(r"\$H[XYZABC]*[ \t]*(?=[;(]|\Z)", re.IGNORECASE)
+_HEAD_BYTES = 1 << 14
+_NO_WORDS = re.compile(r"(?:[ \t]*(?:\([^)\r\n]*\)[ \t]*)*(?:[%$?~;][^\r\n]*)?(?:\r\n?|\n))*")
+_NESTED_NOTE = (
+    "brackets within a comment: it is read up to where they match, controls may end it at the first ')'"
+)
 _SENDER_HINT = "It is a command that a sender gives the control, no block of a program: remove the line."
 
 
@@ -74,6 +82,8 @@ class Block:
     message: str = ""
     comments: tuple[str, ...] = ()
     profile: tuple[Block, ...] | None = None
+    note: str = ""
+    """What is to be said of the line, besides errors."""
 
     @property
     def is_blank(self) -> bool:
@@ -151,6 +161,7 @@ class _LineReader:
         self.skip_level = 0
         self.comments: list[str] = []
         self.message = ""
+        self.note = ""
 
     def read(self) -> Block:
         self._skip_blanks()
@@ -170,6 +181,7 @@ class _LineReader:
             statement=_utf8(self.line).strip() if is_statement else "",
             message=self.message,
             comments=tuple(self.comments),
+            note=self.note,
         )
 
     def no_word(self) -> ProgramError:
@@ -195,8 +207,16 @@ class _LineReader:
             match = _matched(_SKIP, self.line, self.place)
             self.skip_level = whole(match["level"] or "1")
             self.place = match.end()
-        elif char == ":" and at_start:
+        else:
+            self._read_mark(char, at_start=at_start)
+
+    def _read_mark(self, char: str, *, at_start: bool) -> None:
+        """Read a label, a command to the control, or what makes the line a statement."""
+        if char == ":" and at_start:
             self._read_label()
+        elif self.rules.sender_commands and char in "$?~" and (command := self._sender_command()):
+            self._note(f"{command[0].strip()}: a command to the control, which is not carried out")
+            self.place = command.end()
         elif self._is_statement(char) or (at_start and self.rules.line_numbers and char in "0123456789."):
             self.flags |= STATEMENT
         else:
@@ -246,6 +266,8 @@ class _LineReader:
         close = self.line.find(")", self.place)
         if close < 0 and not self.rules.unclosed_comments:
             raise self._error("the comment is not closed", "Write ')' at its end, on the same line.")
+        if self.rules.nested_comments and "(" in self.line[self.place + 1 : close]:
+            close = self._matching(close)
         end = len(self.line) if close < 0 else close
         comment = self.line[self.place + 1 : end]
         if match := _MESSAGE.match(comment):
@@ -255,6 +277,20 @@ class _LineReader:
             self._keep_comment(comment)
         self.place = end if close < 0 else end + 1
 
+    def _matching(self, first: int) -> int:
+        """Return where the comment that begins here ends with brackets within it, `first` where they do not match."""
+        depth = 0
+        for place in range(self.place, len(self.line)):
+            depth += {"(": 1, ")": -1}.get(self.line[place], 0)
+            if depth == 0:
+                self._note(_NESTED_NOTE)
+                return place
+        return first
+
+    def _note(self, text: str) -> None:
+        self.flags |= MESSAGE
+        self.note = text
+
     def _keep_comment(self, comment: str) -> None:
         self.flags |= COMMENT
         self.comments.append(_utf8(comment).strip())
@@ -263,6 +299,17 @@ class _LineReader:
         """Tell whether nothing but comments follows the present character."""
         pattern = _REMARKS if self.rules.parenthesis_comments else _BLANKS
         return pattern.fullmatch(self.line, self.place + 1) is not None
+
+    def _sender_command(self) -> re.Match[str] | None:
+        """Return the command to the control that the line is; homing counts before the first block alone."""
+        if self.line[: self.place].strip():
+            return None
+        found = _SENDER_COMMAND.match(self.line, self.place)
+        is_early = self.offset <= _HEAD_BYTES
+        if found is None and is_early and (homing := _HOMING.match(self.line, self.place)):
+            before = self.text.content[: self.offset].decode("latin-1")
+            found = homing if _NO_WORDS.fullmatch(before) else None
+        return found
 
     def _may_skip(self) -> bool:
         return not self.words or (len(self.words) == 1 and self.words[0].letter == "N")
@@ -289,7 +336,7 @@ class _LineReader:
             return self._error(f"'{char}' belongs at the beginning of a block", _REMARK_HINT)
         shown = char if char.isascii() and char.isprintable() else f"byte 0x{ord(char):02X}"
         hint = _REMARK_HINT
-        if char in "$?" and self.line[: self.place].strip() == "":
+        if char in "$?~!" and self.line[: self.place].strip() == "":
             hint = _SENDER_HINT
         elif char == ")" and self.rules.parenthesis_comments:
             hint = "A comment ends at its first ')': write no brackets in it."

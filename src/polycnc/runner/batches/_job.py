@@ -21,7 +21,7 @@ from polycnc.runner._blocks import Execution
 from polycnc.runner._check import check
 from polycnc.runner._result import RunResult
 from polycnc.runner._run import run_program
-from polycnc.runner._settings import RunSettings
+from polycnc.runner._settings import RunSettings, machine_for
 from polycnc.runner.batches._thumbnail import thumbnail
 from polycnc.runner.view import TrackCollector
 
@@ -53,10 +53,14 @@ class Setup:
         if self.lathe is None:
             return self
         try:
-            dialect = choose_dialect(ProgramText(job.name, job.content), self.dialect).dialect
+            text = ProgramText(job.name, job.content)
+            dialect = choose_dialect(text, self.dialect).dialect
         except UsageError:  # the program cannot be read, as its report says
             return self
-        return replace(self, machine=self.lathe if dialect.diameter_axes else self.machine, lathe=None)
+        machine = self.lathe
+        if not dialect.diameter_axes:
+            machine = machine_for(None, dialect, text).model_copy(update={"path": self.machine.path})
+        return replace(self, machine=machine, lathe=None)
 
 
 @dataclass(frozen=True, slots=True)
