@@ -44,6 +44,9 @@ def test_a_program_with_a_rotary_table_is_run_by_every_door(tmp_path: Path) -> N
     (tmp_path / "part.nc").write_text(program)
     result = polycnc.run(program)
     assert (result.machine, result.ok, result.extents_mm["A"][1]) == ("mill3+A", True, 90.0)
+    told = "no machine is named: it is mill3 with axis A, which the program has words for"
+    assert told in [message.text for message in result.messages]
+    assert told not in [message.text for message in polycnc.run(program, "mill3+A").messages]
     assert polycnc.check(program) == []
     with polycnc.batch(tmp_path, jobs=1) as batch:
         (report,) = batch

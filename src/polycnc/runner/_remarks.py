@@ -228,6 +228,15 @@ def _key_of(message: str) -> str:
     return next((key for ending, key in _SEEN_BY_CHECK if message.endswith(ending)), "")
 
 
+def added_axes_remark(config: MachineConfig) -> str:
+    """Return what to say of a machine that nobody has named and that has axes added, empty if it has none."""
+    preset, _, added = config.name.partition("+")
+    if not added:
+        return ""
+    axes = f"axis {added}" if len(added) == 1 else f"axes {', '.join(added)}"
+    return f"no machine is named: it is {preset} with {axes}, which the program has words for"
+
+
 def times_remark(config: MachineConfig, dialect: Dialect, words: Mapping[str, int]) -> str:
     """Return what to say of functions that counted 0 s in a run, empty if none did.
 

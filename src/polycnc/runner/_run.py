@@ -17,7 +17,7 @@ from polycnc.runner._execution import LOOP_LIMIT_S, Progress, Rows, TaggedRows, 
 from polycnc.runner._outcome import Alarm, RunMessage
 from polycnc.runner._program_control import control_for, run_under
 from polycnc.runner._record import Record
-from polycnc.runner._remarks import empty_remark, times_remark
+from polycnc.runner._remarks import added_axes_remark, empty_remark, times_remark
 from polycnc.runner._result import RunResult, TracedResult
 from polycnc.runner._settings import RunSettings, program_text
 from polycnc.runner._trace import TraceCollector
@@ -220,7 +220,8 @@ def run_program(
         on_passed=lambda passed: log.note_passed(passed, execution),
     )
     stuck = chosen.problem or _kept(execution, _to_end(execution, control, settings, record), settings)
-    _remark(execution, text, times_remark(config, dialect, log.counts))
+    added = added_axes_remark(config) if settings.machine is None else ""
+    _remark(execution, text, added, times_remark(config, dialect, log.counts))
     result = replace(
         _result(execution, log, collector, stuck), guessed=chosen.reason, refused_s=log.refused_s
     )
@@ -247,13 +248,13 @@ def _with_stock(result: RunResult, machining: MachiningCollector, form: Form) ->
     return replace(result, machined=machined, messages=[*result.messages, *notes])
 
 
-def _remark(execution: ProgramRun, text: ProgramText, times: str | None) -> None:
-    """Note what is to be said of the whole program: that it is empty, and of times that the machine does not name."""
+def _remark(execution: ProgramRun, text: ProgramText, *remarks: str) -> None:
+    """Note what is to be said of the whole program: that it is empty, and of a machine that nobody has named."""
     messages = execution.channel.messages
     if (empty := empty_remark(text)) is not None:
         messages.note(empty.text, 0)
-    if times:
-        messages.note(times, 0)
+    for each in filter(None, remarks):
+        messages.note(each, 0)
 
 
 def _to_end(

@@ -145,8 +145,7 @@ def refuse_rest(block: BlockContext, g: GWord) -> None:
 
 def _no_axis(block: BlockContext, name: str, word: Word) -> ProgramError:
     names = ", ".join(block.after.axis_names)
-    preset = "lathe2" if block.dialect.diameter_axes else "mill3"
-    like = f", like {preset}+{name}" if name in ADDED_AXES else ""
+    like = f", like mill3+{name}" if name in ADDED_AXES and not block.dialect.diameter_axes else ""
     hint = f"Its axes are {names}; remove the word, or choose another machine{like}."
     axes = block.dialect.incremental or block.dialect.language == "rs274"  # its lathes have U and W as axes
     if _WAYS.get(name) in block.after.axis_names and not axes:
