@@ -85,11 +85,11 @@ def run_command(
     from polycnc import load_machine, runner
 
     outputs = _Outputs(trace, plot, screen, save_stock, save_parameters)
-    body = options.body_of(stock, resolution, fixture, target, tolerance, tools)
+    given = machine, dialect, keys, target, tools, *_files(stock, *(fixture or ()))
+    outputs.check(programs, (*programs, *given))
     named = load_machine(machine)
-    bodies = _files(stock, *body["fixtures"], *(each.form for each in (named.stock, *named.fixtures) if each))
-    outputs.check(programs, (*programs, machine, dialect, keys, target, tools, *bodies))
     check_stock_file(save_stock, stock if stock is not None or named.stock is None else named.stock.form)
+    outputs.check(programs, _files(*(each.form for each in (named.stock, *named.fixtures) if each)))
     texts = [read_program(program) for program in programs]
     settings = runner.RunSettings(
         machine,
@@ -103,7 +103,7 @@ def run_command(
         ignore=options.codes_of(ignore),
         loop_limit_s=runner.LOOP_LIMIT_S if loop_limit is None else loop_limit,
         save_parameters=save_parameters,
-        **body,
+        **options.body_of(stock, resolution, fixture, target, tolerance, tools),
     )
     _say_if_ideal(settings.machine_of(texts[0]), servo)
     results = []

@@ -236,7 +236,8 @@ def _shift(p: float | None, q: float | None) -> tuple[float, float] | None:
 def _level_before(block: BlockContext, axis: int) -> float | None:
     """Return where the axis stood before a cycle that has never had R; None where R must be there."""
     cycle = block.after.cycle
-    if cycle.action == _BACK_BORE or cycle.words.retract_mm is not None or _strict(block):
+    may_begin = block.dialect.cycles.begins_without_r and cycle.action != _BACK_BORE
+    if not may_begin or cycle.words.retract_mm is not None:
         return None
     block.note(f"G{cycle.code:g} without R: it retracts to where the axis stood before the cycle")
     return cycle.initial - float(block.after.modal.offset[axis])

@@ -43,6 +43,11 @@ class Cycles(StrictModel):
         default=("L", "K"), description="Addresses that say how many holes a block drills."
     )
 
+    begins_without_r: bool = Field(
+        default=False,
+        description="A cycle that has never had R begins at the level before it, with a remark.",
+    )
+
     @property
     def shift_direction(self) -> tuple[float, float]:
         """Where in the plane Q shifts the tool when a block gives no I and J."""
