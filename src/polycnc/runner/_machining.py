@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import math
+from collections.abc import Iterable, Mapping
 from dataclasses import replace
 from pathlib import Path
 
@@ -251,6 +252,7 @@ class MachiningCollector:
             comparison=None,
             messages=[
                 f"stock: {stock}, {stock.cell_mm:.4g} mm a cell{self._said}",
+                *_too_wide(stock.cell_mm, tools, tally.by_tool_mm3),
                 *self._notes,
                 *map(self._cuts_nothing, sorted(tally.unknown_tools)),
                 *([doubt] if len(known) < len(contacts) else []),
@@ -295,3 +297,14 @@ class MachiningCollector:
             for ends in ((stock.box.low, stock.box.high), (low, high))
         )
         return f"no tool meets the stock: it lies at {lies}, and they cut at {cut} (mm from the work offset)"
+
+
+def _too_wide(cell_mm: float, tools: Mapping[int, Tool | Insert], cut: Iterable[int]) -> list[str]:
+    """Return what to say where a tool that has cut is less than two cells wide."""
+    mills = ((number, tool.diameter_mm) for number in cut if isinstance(tool := tools.get(number), Tool))
+    number, diameter_mm = min(mills, key=lambda each: each[1], default=(0, math.inf))
+    if diameter_mm >= 2.0 * cell_mm:
+        return []
+    return [
+        f"cells of {cell_mm:g} mm are wide for tool {number} of {diameter_mm:g} mm: volumes and depths are rough"
+    ]

@@ -478,3 +478,9 @@ def test_a_body_that_cannot_be_cut_there_is_refused(
     dialect = "fanuc-lathe" if machine == "lathe2" else None
     with pytest.raises(UsageError, match=re.escape(says)):
         polycnc.run(program, machine, dialect, stock=stock, resolution_mm=resolution_mm)
+
+
+@pytest.mark.parametrize(("cell_mm", "said"), [(0.5, False), (3.0, False), (3.5, True), (20.0, True)])
+def test_cells_too_wide_for_a_tool_are_said(cell_mm: float, said: bool) -> None:
+    result = polycnc.run(SLOT.format(deep=2), stock="box=-40,-40,-3,40,40,0", resolution_mm=cell_mm)
+    assert any("are wide for tool 1 of 6 mm" in message.text for message in result.messages) == said
