@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import gc
 import ipaddress
 import os
 import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, NoReturn
 
@@ -47,7 +50,8 @@ def serve_command(
     part: _options.Part = None,
 ) -> None:
     """Serve simulated machines that run, until Ctrl-C ends it."""
-    from polycnc.servers.setup import Flags, plan_of
+    with _without_collections():
+        from polycnc.servers.setup import Flags, plan_of
 
     _check_addresses(address, count, port, memory)
     plan = plan_of(
@@ -74,9 +78,20 @@ def serve_command(
             part=part,
         )
     )
-    from polycnc.servers.process import run
+    with _without_collections():
+        from polycnc.servers.process import run
 
     run(serve_plan(plan, is_part=part is not None) if plan.processes == 1 else serve_fleet(plan))
+
+
+@contextmanager
+def _without_collections() -> Iterator[None]:
+    """Load what stays: a collection would look through all of it again and again."""
+    gc.disable()
+    try:
+        yield
+    finally:
+        gc.enable()
 
 
 def _leave(status: int) -> NoReturn:
@@ -163,7 +178,6 @@ async def serve_fleet(plan: Plan) -> None:
 async def serve_plan(plan: Plan, *, is_part: bool = False) -> None:
     """Serve what a plan says until a signal ends it; `is_part`: as one of several processes."""
     import asyncio
-    import gc
     import signal
 
     from polycnc import runner
@@ -174,7 +188,8 @@ async def serve_plan(plan: Plan, *, is_part: bool = False) -> None:
     try:
         for why in plan.lasting:
             say_error(why)
-        await serving.open(plan.machines, plan.shared)
+        with _without_collections():
+            await serving.open(plan.machines, plan.shared)
         for warning in plan.warnings:
             say_error(warning)
         if is_part:

@@ -1,35 +1,35 @@
 """Run part programs: from a program and a machine to a typed result, a trace, a plot; post tool paths and prove them.
 
-What posting and debugging need is loaded when it is first used.
+What a name needs is loaded when it is first used.
 """
 
 from typing import TYPE_CHECKING
 
 from polycnc.on_demand import names_on_demand
-from polycnc.runner._check import CheckReport, check, errors_in, inspect
-from polycnc.runner._execution import LOOP_LIMIT_S
-from polycnc.runner._operations import Operation
-from polycnc.runner._outcome import Alarm, RunMessage, Trace, counted, time_text
-from polycnc.runner._program_control import SCREEN_FORMATS, read_keys
-from polycnc.runner._remarks import Remark
-from polycnc.runner._result import RunResult, TracedResult
-from polycnc.runner._run import run, run_program
-from polycnc.runner._run_events import RunEvent, RunEvents
-from polycnc.runner._settings import RunSettings, machine_for, program_text
-from polycnc.runner._trace import TraceWriter, read_trace, trace_columns
-from polycnc.runner._trace_formats import TRACE_FORMATS
-from polycnc.runner._wall import WallClock
 
 if TYPE_CHECKING:
+    from polycnc.runner._check import CheckReport, check, errors_in, inspect
     from polycnc.runner._debugger import Debugger, Place
+    from polycnc.runner._execution import LOOP_LIMIT_S
     from polycnc.runner._machined import Machined
     from polycnc.runner._machining import MachiningCollector
+    from polycnc.runner._operations import Operation
+    from polycnc.runner._outcome import Alarm, RunMessage, Trace, counted, time_text
     from polycnc.runner._post import PostResult, post_file
+    from polycnc.runner._program_control import SCREEN_FORMATS, read_keys
+    from polycnc.runner._remarks import Remark
+    from polycnc.runner._result import RunResult, TracedResult
+    from polycnc.runner._run import run, run_program
+    from polycnc.runner._run_events import RunEvent, RunEvents
     from polycnc.runner._schemas import SCHEMAS, json_schema
+    from polycnc.runner._settings import RunSettings, machine_for, program_text
     from polycnc.runner._stock_tools import tools_of
     from polycnc.runner._survey import LineTime, Survey, holds_before, survey
+    from polycnc.runner._trace import TraceWriter, read_trace, trace_columns
+    from polycnc.runner._trace_formats import TRACE_FORMATS
     from polycnc.runner._verify import Violation, verify_trace
     from polycnc.runner._verify_post import Deviation, PostVerification, verify_post
+    from polycnc.runner._wall import WallClock
     from polycnc.runner.batches import BatchResult, batch
     from polycnc.runner.comparison import Comparison, PathDeviation, compare
     from polycnc.runner.machine_sources import machine_from

@@ -11,7 +11,6 @@ from polycnc.cnc import Control
 from polycnc.errors import ProgramError
 from polycnc.nc import ProgramText
 from polycnc.nc.cpl import holds_cpl
-from polycnc.runner import errors_in, inspect
 from polycnc.servers.http._beside import Beside, Check, Work, copies_of
 from polycnc.servers.http._documents import as_json
 from polycnc.servers.http._found import JSON, ONE, Found, body
@@ -66,6 +65,11 @@ def _work(machine: ServedMachine, control: Control, text: ProgramText) -> Work:
     copies, folder = copies_of(control, machine.programs), machine.folder
 
     def compute(check: Check) -> bytes:
+        from polycnc.runner import (
+            errors_in,
+            inspect,
+        )  # a server that nobody asks for a check starts without it
+
         if copies.dialect.language == "cpl" and holds_cpl(text.content):
             found = inspect(
                 text, copies.config, copies.dialect, root=folder, rehearse=False, progress=check

@@ -8,7 +8,6 @@ from fastapi import APIRouter, Query, Response
 
 from polycnc.cnc import Control, ControlError, Refusal
 from polycnc.nc import ProgramText
-from polycnc.runner.view import preview
 from polycnc.servers.http._beside import Beside, Check, Work, copies_of
 from polycnc.servers.http._documents import as_json
 from polycnc.servers.http._found import JSON, ONE, Found, answer
@@ -55,6 +54,8 @@ def _work(control: Control, programs: Programs, name: str) -> Work:
     copies = copies_of(control, programs)
 
     def compute(check: Check) -> bytes:
+        from polycnc.runner.view import preview  # a server that nobody asks for a path starts without it
+
         shown = preview(
             text, copies.config, copies.dialect, language=copies.language, texts=copies.texts,
             most=MOST_POINTS, progress=check,
