@@ -10,7 +10,7 @@ from typing import Any
 
 from polycnc.cnc import Control
 from polycnc.errors import UsageError
-from polycnc.machine import Device, Machine, Wall, load_machine
+from polycnc.machine import Device, Wall
 from polycnc.servers.machines import (
     Door,
     DoorKind,
@@ -102,8 +102,6 @@ class Serving:
 
         Machines begin one after the other: what happens in all of them after the same time does not happen at once.
         """
-        if any(machine.programs is not None for machine in self.machines):
-            await asyncio.to_thread(_load_motion)  # doors answer meanwhile
         await self.start_programs()
         for machine in self.machines:
             await asyncio.sleep(0)  # whoever wants it to end does not wait for the others
@@ -207,8 +205,3 @@ def _read(path: Path) -> bytes:
         return path.read_bytes()
     except OSError as error:
         raise UsageError(f"{path}: cannot be read: {error.strerror}", hint="Name a program file.") from None
-
-
-def _load_motion() -> None:
-    """Load what is compiled of motion, by a machine that nobody sees."""
-    Machine(load_machine()).advance(1)
