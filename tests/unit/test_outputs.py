@@ -45,6 +45,7 @@ def here(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 OVER_INPUTS = {
     "trace over program": ("run", "p.csv", "--trace", "p.csv"),
     "trace over machine": ("run", "p.nc", "-m", "m.csv", "--trace", "m.csv"),
+    "trace over tools": ("run", "p.nc", "--tools", "inch=k.csv", "--trace", "k.csv"),
     "trace over keys": ("run", "p.nc", "--keys", "k.csv", "--trace", "./k.csv"),
     "trace over a link to it": ("run", "p.nc", "-m", "m.toml", "--trace", "link.csv"),
     "trace and plot in one": ("run", "p.nc", "--trace", "t.csv", "--screen", "t.csv"),

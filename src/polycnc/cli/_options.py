@@ -296,6 +296,15 @@ def body_of(
     )
 
 
+def file_of_tools(tools: str | None) -> str | None:
+    """Return the file of tools, which no output may replace."""
+    if tools is None:
+        return None
+    from polycnc.runner.machine_sources import tools_file
+
+    return str(tools_file(tools))
+
+
 def codes_of(texts: list[str] | None) -> tuple[str, ...]:
     """Return the codes of all --ignore options."""
     return tuple(code for text in texts or () for code in text.replace(",", " ").split())

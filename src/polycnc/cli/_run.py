@@ -85,8 +85,8 @@ def run_command(
     from polycnc import load_machine, runner
 
     outputs = _Outputs(trace, plot, screen, save_stock, save_parameters)
-    given = machine, dialect, keys, target, tools, *_files(stock, *(fixture or ()))
-    outputs.check(programs, (*programs, *given))
+    files = options.file_of_tools(tools), *_files(stock, *(fixture or ()))
+    outputs.check(programs, (*programs, machine, dialect, keys, target, *files))
     named = load_machine(machine)
     check_stock_file(save_stock, stock if stock is not None or named.stock is None else named.stock.form)
     outputs.check(programs, _files(*(each.form for each in (named.stock, *named.fixtures) if each)))

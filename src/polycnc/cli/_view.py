@@ -25,7 +25,7 @@ def view_command(
     from polycnc.runner import check_view_file, open_in_browser, program_text, time_text, view_program
     from polycnc.stock import file_of
 
-    inputs = [program, *(Path(each) for each in (machine, dialect, tools) if each is not None)]
+    inputs = [program, *(Path(each) for each in (machine, dialect, options.file_of_tools(tools)) if each)]
     if stock is not None and (body := file_of(stock)) is not None:
         inputs.append(body)
     text = program_text(program)

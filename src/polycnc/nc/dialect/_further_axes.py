@@ -28,11 +28,11 @@ def further_axes(text: ProgramText, dialect: Dialect) -> str:
     if dialect.diameter_axes or dialect.language == "cpl":
         return ""
     words = words_of(text, _LOOKED_AT)
-    found = {
-        word[1].decode().upper()
-        for word in _WORD.finditer(words)
-        if not _OTHER_MEANINGS.search(_line(words, word))
-    }
+    found: set[str] = set()
+    for word in _WORD.finditer(words):
+        letter = word[1].decode().upper()
+        if letter not in found and not _OTHER_MEANINGS.search(_line(words, word)):
+            found.add(letter)
     found -= set(dialect.ignored_addresses) | set(dialect.incremental)
     if not _Y.search(words):
         found -= set(_LINEAR)

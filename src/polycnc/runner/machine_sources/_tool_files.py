@@ -16,6 +16,7 @@ from polycnc.stock import CHAMFER_DEG, POINT_DEG
 from polycnc.units import MM_PER_INCH
 
 _MOST_MM = 1000.0
+_INCH = "inch="
 _MOST = {"teeth": 200.0, "angle_deg": 180.0, "taper_deg": 90.0}
 
 _COLUMNS = {
@@ -58,19 +59,27 @@ def with_tools(config: MachineConfig, source: str | Path) -> MachineConfig:
         UsageError: the file is neither a `.tbl` nor a `.csv` file.
         ConfigurationError: it cannot be read, or what it says of a tool cannot be.
     """
-    name, to_mm = str(source), 1.0
-    if name.lower().startswith("inch="):
-        name, to_mm = name[5:], MM_PER_INCH
-    path = Path(name)
+    path, to_mm = _named(source)
     kind = path.suffix.lower()
     if kind not in (".tbl", ".csv"):
         raise UsageError(
-            f"'{name}' is no list of tools", hint="Name a .tbl file of LinuxCNC, or a .csv file."
+            f"'{path}' is no list of tools", hint="Name a .tbl file of LinuxCNC, or a .csv file."
         )
     text = _content(path)
     found = dict(table_rows(text, str(path), to_mm)) if kind == ".tbl" else _listed(text, str(path), to_mm)
     tools = {number: ToolConfig.model_validate(tool) for number, (tool, _) in found.items()}
     return config.model_copy(update={"tools": {**config.tools, **tools}})
+
+
+def tools_file(source: str | Path) -> Path:
+    """Return the file that `FILE` or `inch=FILE` names."""
+    return _named(source)[0]
+
+
+def _named(source: str | Path) -> tuple[Path, float]:
+    """Return a file, and what its lengths are in mm."""
+    is_inch = str(source).lower().startswith(_INCH)
+    return (Path(str(source)[len(_INCH) :]), MM_PER_INCH) if is_inch else (Path(source), 1.0)
 
 
 def _content(path: Path) -> str:

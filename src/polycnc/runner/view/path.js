@@ -64,7 +64,7 @@ export class Path {
       let end = k;
       while (isRapid.has(end)) end++;
       const run = Array.from({ length: end - k }, (_, n) => k + n);
-      if (run.every(near)) found.push(...run);
+      if (run.every(near)) for (const each of run) found.push(each);
       k = Math.max(end - 1, k);
     }
     return found;

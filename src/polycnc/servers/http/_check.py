@@ -65,10 +65,8 @@ def _work(machine: ServedMachine, control: Control, text: ProgramText) -> Work:
     copies, folder = copies_of(control, machine.programs), machine.folder
 
     def compute(check: Check) -> bytes:
-        from polycnc.runner import (
-            errors_in,
-            inspect,
-        )  # a server that nobody asks for a check starts without it
+        # A server that nobody asks for a check starts without it.
+        from polycnc.runner import errors_in, inspect
 
         if copies.dialect.language == "cpl" and holds_cpl(text.content):
             found = inspect(
